@@ -1,0 +1,47 @@
+# bathyflash: each verb creates what it needs.
+BIN := .venv/bin
+READY := .venv/ready
+DEMO := runs/demo
+FLY := $(BIN)/bathyflash run scenarios/measured-seabed.toml -o $(DEMO)
+OTHER_RUN := 5
+
+.PHONY: help venv libraries demo test slow check format
+
+help:
+	@echo "make venv    create .venv with all libraries"
+	@echo "make demo    fly a mission over a measured seabed and draw it: $(DEMO)/picture.png"
+	@echo "make check   format, lint, types and direction of imports"
+	@echo "make test    check, then all tests but the slow ones"
+	@echo "make slow    the slow tests"
+	@echo "make format  bring the code into its format"
+
+venv: $(READY)
+
+$(READY): requirements.lock pyproject.toml tools/create_environment.sh
+	@tools/create_environment.sh
+	@touch $@
+
+libraries:
+	@tools/system_libraries.sh
+
+# A demo of older code is flown anew.
+demo: libraries $(READY)
+	$(FLY) || { [ $$? -eq $(OTHER_RUN) ] && rm -rf $(DEMO) && $(FLY); }
+	$(BIN)/bathyflash view $(DEMO) --screenshot $(DEMO)/picture.png
+	@echo "picture: $(DEMO)/picture.png"
+
+check: $(READY)
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+test: libraries check
+	$(BIN)/python -m pytest -m "not slow"
+
+slow: libraries $(READY)
+	$(BIN)/python -m pytest -m slow
+
+format: $(READY)
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
