@@ -1,0 +1,93 @@
+"""A seabed or a body from a mesh file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from terrain.file_faults import SeabedFileError, existing, frame_near
+from terrain.seabed import Seabed, uniform_seabed
+
+if TYPE_CHECKING:
+    import trimesh
+
+FloatArray = NDArray[np.float64]
+
+SHOWN = 5
+
+
+def read_mesh(path: str | Path) -> trimesh.Trimesh:
+    """Return the triangles of a mesh file as they are; faces without area are left out.
+
+    Raises
+    ------
+    FileNotFoundError
+        When there is no such file.
+    SeabedFileError
+        When it is not readable, has no faces, a vertex that is not finite or a face that names a
+        vertex there is not; one line a fault.
+    """
+    import trimesh
+
+    path = existing(path)
+    try:
+        mesh = trimesh.load_mesh(path, process=False)
+    except Exception as error:  # the readers of a dozen formats raise what they like
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise SeabedFileError(f"{path}: not a readable mesh file. {reason}") from error
+    vertices = np.asarray(getattr(mesh, "vertices", np.empty((0, 3))), dtype=np.float64)
+    faces = np.asarray(getattr(mesh, "faces", np.empty((0, 3))), dtype=np.int64)
+    faults = _faults(vertices, faces)
+    if faults:
+        raise SeabedFileError("\n".join(f"{path}: {fault}" for fault in faults))
+    corners = vertices[faces]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return trimesh.Trimesh(vertices, faces[(normal != 0.0).any(axis=1)], process=False)
+
+
+def _faults(vertices: FloatArray, faces: NDArray[np.int64]) -> list[str]:
+    """Return what is wrong, the first few of each kind."""
+    if len(faces) == 0:
+        return ["no faces could be read. look for vertices that are not numbers"]
+    bad = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
+    faults = [f"vertex {i}: a coordinate is not a finite number" for i in bad[:SHOWN]]
+    outside = (faces < 0) | (faces >= len(vertices))
+    for face in np.flatnonzero(outside.any(axis=1))[:SHOWN]:
+        index = faces[face][outside[face]][0]
+        faults.append(f"face {face}: index {index}, but there are {len(vertices)} vertices")
+    return faults
+
+
+def from_mesh_file(
+    path: str | Path,
+    *,
+    epsg: int,
+    vertical_epsg: int,
+    reflectance: float,
+    offset: tuple[float, float, float] = (0.0, 0.0, 0.0),
+) -> Seabed:
+    """Return the seabed of a mesh file whose vertices, plus ``offset`` [m], are map coordinates.
+
+    A mesh file names no CRS: the scenario's is taken. A file in single precision should hold small
+    coordinates and an offset, or it is 0.25 m off at the coordinates of a map.
+
+    Raises
+    ------
+    FileNotFoundError, SeabedFileError
+        As read_mesh.
+    """
+    mesh = read_mesh(path)
+    middle = mesh.bounds.mean(axis=0) + offset
+    frame = frame_near(
+        east=float(middle[0]), north=float(middle[1]), epsg=epsg, vertical_epsg=vertical_epsg
+    )
+    mesh.apply_translation(np.asarray(offset) - frame.origin)
+    return uniform_seabed(
+        mesh,
+        reflectance=reflectance,
+        map_frame=frame,
+        source=f"Mesh file {Path(path).name}.",
+    )
