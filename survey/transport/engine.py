@@ -1,0 +1,268 @@
+"""The fast engine: one flash, from the laser to expected photo-electrons in every pixel.
+
+Each path of light is split at its last turn (a bottom reflection, or a scattering by more than
+the split angle). Up to it a forward walk of every order runs from the laser; after it a walk runs
+backward from the pixel, scattering by no more than the split angle; the two are paired where they
+meet. Paths without any turn are left out: below 1e-4 of the light at 30 degrees.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from survey.flight.pose import Pose
+from survey.flight.trajectory import footprint
+from survey.optics.water import Water
+from survey.sensor.camera import Camera
+from survey.sensor.laser import Laser
+from survey.sensor.receiver import Receiver
+from survey.transport.glint import add_glint, add_mirror
+from survey.transport.join import join_in_column, join_on_patches
+from survey.transport.launch import Address, Optics, launch_backward, launch_forward
+from survey.transport.random import SURFACE, chance
+from survey.transport.records import LEDGER_NAMES, Records, empty_records, overflowed, trimmed
+from survey.transport.scene import (
+    Bounds,
+    Layers,
+    Scene,
+    forward_medium,
+    kernel_sea,
+    restricted_medium,
+)
+from survey.transport.settings import TransportSettings
+from survey.transport.waveforms import Replicates, Waveforms, blurred, padded_bins, pulse_taps
+from terrain.patches import patch_table
+from terrain.sea_surface import SeaSurface
+
+if TYPE_CHECKING:
+    from terrain.seabed import Seabed
+
+FloatArray = NDArray[np.float64]
+
+
+def kernel_optics(*, camera: Camera, receiver: Receiver, pose: Pose) -> Optics:
+    """Return camera and aperture at a pose, as kernels take them."""
+    half_forward, half_right = camera.half_tangents
+    return Optics(
+        position=np.asarray(pose.position, dtype=np.float64),
+        turn=pose.body_to_map(),
+        half_forward=half_forward,
+        half_right=half_right,
+        rows=camera.rows,
+        columns=camera.columns,
+        columns_forward=camera.long_side == "along",
+        aperture_radius=receiver.aperture_radius,
+    )
+
+
+def _until_it_fits(launch: Callable[[Records], None], *, arrivals: int, crossings: int) -> Records:
+    """Launch into lists that are grown until nothing is cut off; the walks are the same again."""
+    while True:
+        records = empty_records(arrivals=arrivals, crossings=crossings)
+        launch(records)
+        if not overflowed(records):
+            return trimmed(records)
+        arrivals, crossings = (
+            max(room, int(1.1 * needed))
+            for room, needed in zip((arrivals, crossings), records.filled, strict=True)
+        )
+
+
+class Engine:
+    """What stays the same from flash to flash: seabed, sea, water, instrument, settings.
+
+    Parameters
+    ----------
+    seabed : Seabed
+        Mesh with reflectance; its grid and patches are built once.
+    surface : SeaSurface
+        Level and slopes of the sea.
+    water : Water
+        Its optical properties.
+    laser, camera, receiver
+        The instrument.
+    photo_electrons_per_photon : float
+        Optics transmission x detection efficiency [1].
+    settings : TransportSettings
+        Work and fineness.
+    seed : int
+        Seed of every random number.
+    """
+
+    def __init__(
+        self,
+        *,
+        seabed: Seabed,
+        surface: SeaSurface,
+        water: Water,
+        laser: Laser,
+        camera: Camera,
+        receiver: Receiver,
+        photo_electrons_per_photon: float,
+        settings: TransportSettings,
+        seed: int,
+    ) -> None:
+        self.surface, self.water, self.settings, self.seed = surface, water, settings, seed
+        self.laser, self.camera, self.receiver = laser, camera, receiver
+        self.photo_electrons = laser.photons_per_pulse * photo_electrons_per_photon
+        self._forward = forward_medium(water)
+        self._backward = restricted_medium(water, split_angle=settings.split_angle)
+        self._cosines = water.phase_function.cosine_table()
+        self._grid = seabed.grid
+        self._patches = patch_table(
+            seabed.mesh, patch_size=settings.patch_size, reflectance=seabed.reflectance
+        )
+        self._reflectance = np.ascontiguousarray(seabed.reflectance, dtype=np.float64)
+        self._bins, pad = padded_bins(
+            start=receiver.gate_start,
+            width=receiver.bin_width,
+            bins=receiver.bins,
+            sigma=laser.pulse_sigma,
+        )
+        self._taps = pulse_taps(sigma=laser.pulse_sigma, width=receiver.bin_width, pad=pad)
+
+    def flash(self, *, pose: Pose, frame: int) -> Waveforms:
+        """Return the expected photo-electrons of one flash.
+
+        Parameters
+        ----------
+        pose : Pose
+            True pose of sensor and laser.
+        frame : int
+            Address of the flash: the same number draws the same walks.
+        """
+        optics = kernel_optics(camera=self.camera, receiver=self.receiver, pose=pose)
+        scene = self._scene(pose, frame=frame)
+        address = Address(self.seed, frame)
+        forward = self._forward_walks(scene, optics, address)
+        backward = self._backward_walks(scene, optics, address)
+        mean, variance = self._estimate(self._joined(scene, forward, backward, address))
+        surface = self._surface_echo(scene, optics)[None]
+        grid = (3, optics.rows, optics.columns, self.receiver.bins)
+        ledger = forward.ledger / self.settings.replicates
+        return Waveforms(
+            photo_electrons=np.concatenate([surface, mean]).reshape(grid),
+            variance=np.concatenate([np.zeros_like(surface), variance]).reshape(grid),
+            bin_start=self.receiver.gate_start,
+            bin_width=self.receiver.bin_width,
+            ledger=dict(zip(LEDGER_NAMES, ledger.tolist(), strict=True)),
+        )
+
+    def _forward_walks(self, scene: Scene, optics: Optics, address: Address) -> Records:
+        batches = self.settings.replicates
+        height = optics.position[2] - scene.sea.level
+        length, width = (2.0 * half * height for half in (optics.half_forward, optics.half_right))
+        spacing = (batches / self.settings.forward_walks_per_m2) ** 0.5
+        along, across = (max(1, round(side / spacing)) for side in (length, width))
+
+        def launch(records: Records) -> None:
+            for batch in range(batches):
+                launch_forward(
+                    scene, self._forward, optics, records, address, batch, along, across,
+                    self.photo_electrons,
+                )  # fmt: skip
+
+        walks = batches * along * across
+        return _until_it_fits(launch, arrivals=2 * walks, crossings=2 * walks * scene.layers.planes)
+
+    def _backward_walks(self, scene: Scene, optics: Optics, address: Address) -> Records:
+        walks, stride = self.settings.backward_walks_per_replicate, self.settings.column_stride
+        batches = self.settings.replicates
+
+        def launch(records: Records) -> None:
+            for batch in range(batches):
+                launch_backward(
+                    scene, self._backward, optics, records, address, batch, walks, stride
+                )
+
+        launched = batches * walks * optics.rows * optics.columns
+        return _until_it_fits(
+            launch, arrivals=launched, crossings=2 * launched // stride * scene.layers.planes
+        )
+
+    def _joined(
+        self, scene: Scene, forward: Records, backward: Records, address: Address
+    ) -> NDArray[np.float32]:
+        pixels = self.camera.rows * self.camera.columns
+        echoes = np.zeros((2, self.settings.replicates, 2, pixels, self._bins.number), np.float32)
+        isolated = self.settings.illumination == "isolated"
+        order = np.argsort(forward.patch, kind="stable")
+        patches = forward.patch[order]
+        first = np.searchsorted(patches, backward.patch, side="left")
+        last = np.searchsorted(patches, backward.patch, side="right")
+        join_on_patches(echoes, self._bins, forward, order, first, last, backward, isolated)
+        layers = scene.layers
+        join_in_column(
+            echoes, self._bins, forward, backward,
+            layers.planes * layers.across * layers.along,
+            self._cosines, np.cos(self.settings.split_angle),
+            self.water.scattering * layers.thickness / layers.cell**2,
+            self.settings.column_pairs, isolated, *address,
+        )  # fmt: skip
+        return echoes
+
+    def _estimate(self, echoes: NDArray[np.float32]) -> tuple[FloatArray, FloatArray]:
+        """Return mean and squared standard error (2, pixels, bins), the pulse's width included.
+
+        Forward and backward walks are independent, so their variances add: each is that of the
+        mean over its batches. What varies by the pairing alone is counted in both (departure from
+        an unbiased variance, to the safe side).
+        """
+        shape = (2, echoes.shape[3], self.receiver.bins)
+        sides = []
+        for side in echoes:
+            replicates = Replicates(shape=shape)
+            for batch in side:
+                replicates.add(np.stack([blurred(origin, self._taps) for origin in batch]))
+            sides.append(replicates)
+        return sides[0].mean, sides[0].variance_of_mean + sides[1].variance_of_mean
+
+    def _surface_echo(self, scene: Scene, optics: Optics) -> FloatArray:
+        histogram = np.zeros((optics.rows * optics.columns, self._bins.number))
+        add = add_mirror if self.surface.slope_variance == 0.0 else add_glint
+        add(histogram, self._bins, scene, optics, self.water.refractive_index, self.photo_electrons)
+        return blurred(histogram, self._taps)
+
+    def _scene(self, pose: Pose, *, frame: int) -> Scene:
+        """Return the scene of a flash: one realisation of the facets, planes of the column."""
+        key = int(chance(seed=self.seed, purpose=SURFACE, frame=frame).integers(1 << 63))
+        bounds = self._bounds(pose)
+        return Scene(
+            sea=kernel_sea(self.surface, key=key),
+            grid=self._grid,
+            patches=self._patches,
+            reflectance=self._reflectance,
+            bounds=bounds,
+            layers=self._layers(bounds),
+        )
+
+    def _bounds(self, pose: Pose) -> Bounds:
+        """Return the lit rectangle with a margin that holds the light spread sideways."""
+        depth = self._deepest()
+        outline = footprint(self.camera, pose, self.surface.level)
+        margin = 10.0 + 0.75 * depth + self.receiver.aperture_radius
+        west, south = outline.min(axis=0) - margin
+        east, north = outline.max(axis=0) + margin
+        return Bounds(west, east, south, north, self.receiver.gate_end)
+
+    def _deepest(self) -> float:
+        """Return the depth [m] that light can reach and come back from within the gate."""
+        in_gate = self.receiver.bins * self.receiver.bin_width * self._forward.speed / 2.0
+        return max(0.0, min(in_gate, self.surface.level - self._grid.z_low))
+
+    def _layers(self, bounds: Bounds) -> Layers:
+        thickness, cell = self.settings.layer_thickness, self.settings.cell_size
+        return Layers(
+            top=self.surface.level - 0.5 * thickness,
+            thickness=thickness,
+            planes=int(np.ceil(self._deepest() / thickness)) + 1,
+            west=bounds.west,
+            south=bounds.south,
+            cell=cell,
+            across=int(np.ceil((bounds.east - bounds.west) / cell)),
+            along=int(np.ceil((bounds.north - bounds.south) / cell)),
+        )

@@ -1,0 +1,310 @@
+"""The reference engine: plain, slow, surely right. The fast engine is judged by it.
+
+Light is followed forward alone, in one piece, from the laser to the aperture. Where the last event
+before the surface is smooth (a bottom reflection, or a scattering by more than ``peak_angle``),
+the chance to go straight into the camera is added in the textbook way (local estimate); where it
+is a scattering within the forward peak, for which that estimate never settles, the light that does
+arrive is counted. ``peak_angle = 0`` is the textbook estimator throughout, pi counts throughout.
+
+The camera is the same as the fast engine's, pixels defined by the direction of the light. For
+enough light to arrive, give it an aperture of many metres: both engines then simulate the same
+giant telescope, and no approximation enters the comparison.
+"""
+
+from __future__ import annotations
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.constants import speed_of_light
+
+from survey.flight.pose import Pose
+from survey.optics.interface import fresnel_reflectance, reflected, refracted
+from survey.optics.water import Water
+from survey.sensor.camera import Camera
+from survey.sensor.laser import Laser
+from survey.sensor.receiver import Receiver
+from survey.transport.directions import drawn, lambert_direction, turned
+from survey.transport.engine import kernel_optics
+from survey.transport.join import TimeBins, deposit
+from survey.transport.launch import Optics, direction_of, pixel_at
+from survey.transport.random import REFERENCE, exponential, start_stream, uniform
+from survey.transport.scene import Medium, forward_medium
+from terrain.kernels import kernel
+
+FloatArray = NDArray[np.float64]
+COLUMN, BOTTOM = 0, 1
+AIMED, AIMED_WITHIN = 0.2, 1.0 - math.cos(math.radians(45.0))
+
+
+@kernel
+def _density_at(cosine: float, table: FloatArray) -> float:
+    place = max(0.0, 0.5 * (cosine + 1.0)) * (table.shape[0] - 1)
+    i = min(int(place), table.shape[0] - 2)
+    return float(table[i] + (place - i) * (table[i + 1] - table[i]))
+
+
+@kernel
+def _reaches_aperture(
+    optics: Optics, x: float, y: float, z: float, ux: float, uy: float, uz: float
+) -> float:
+    """Distance along an upward ray to the aperture, or -1 when it misses."""
+    px, py, pz = optics.position[0] - x, optics.position[1] - y, optics.position[2] - z
+    bx, by, bz = optics.turn[0, 2], optics.turn[1, 2], optics.turn[2, 2]
+    length = (px * bx + py * by + pz * bz) / (ux * bx + uy * by + uz * bz)
+    miss = (px - ux * length) ** 2 + (py - uy * length) ** 2 + (pz - uz * length) ** 2
+    return length if length > 0.0 and miss <= optics.aperture_radius**2 else -1.0
+
+
+@kernel
+def _line_of_view(
+    optics: Optics, index: float, forward: float, right: float
+) -> tuple[float, float, float, float, float, float, float]:
+    """Return direction of light in water, in air, and the view's solid angle in water there.
+
+    The solid angle is that of the whole field of view if all of it were like this line: with a
+    line drawn evenly over the tangent plane its inverse is the density per steradian in water.
+    """
+    ax, ay, az, cosine = direction_of(optics, forward, right)
+    wx, wy, wz = refracted(ax, ay, az, 0.0, 0.0, 1.0, 1.0 / index)
+    solid = 4.0 * optics.half_forward * optics.half_right * cosine**3
+    return -wx, -wy, -wz, -ax, -ay, -az, solid * az / (wz * index * index)
+
+
+@kernel
+def _seen_along(optics: Optics, ux: float, uy: float, uz: float) -> tuple[float, float, int]:
+    """Return the tangents under which the camera sees light going along u, and the pixel."""
+    t = optics.turn
+    boresight = -(t[0, 2] * ux + t[1, 2] * uy + t[2, 2] * uz)
+    if boresight <= 0.0:
+        return 0.0, 0.0, -1
+    forward = -(t[0, 0] * ux + t[1, 0] * uy + t[2, 0] * uz) / boresight
+    right = -(t[0, 1] * ux + t[1, 1] * uy + t[2, 1] * uz) / boresight
+    return forward, right, pixel_at(optics, forward, right)
+
+
+@kernel
+def _scattered(
+    medium: Medium, table: FloatArray, state: NDArray[np.uint64], dx: float, dy: float, dz: float
+) -> tuple[float, float, float, float]:
+    """Draw a new direction; one in five is aimed upwards, and the weight makes up for it.
+
+    Aimed directions fill a cone of 45 degrees evenly. Returns the direction and the factor
+    p / (0.8 p + 0.2 aimed density) on the weight.
+    """
+    azimuth = 2.0 * math.pi * uniform(state)
+    if uniform(state) < AIMED:
+        nx, ny, nz = turned(0.0, 0.0, 1.0, AIMED_WITHIN * uniform(state), azimuth)
+    else:
+        nx, ny, nz = turned(dx, dy, dz, drawn(medium.sampler, 1.0, state), azimuth)
+    aimed = 1.0 / (2.0 * math.pi * AIMED_WITHIN) if 1.0 - nz <= AIMED_WITHIN else 0.0
+    density = _density_at(dx * nx + dy * ny + dz * nz, table)
+    return nx, ny, nz, density / ((1.0 - AIMED) * density + AIMED * aimed)
+
+
+@kernel
+def _score_straight_exit(
+    histogram: FloatArray,
+    bins: TimeBins,
+    optics: Optics,
+    medium: Medium,
+    attenuation: float,
+    state: NDArray[np.uint64],
+    x: float,
+    y: float,
+    depth: float,
+    dx: float,
+    dy: float,
+    dz: float,
+    table: FloatArray,
+    peak_cosine: float,
+    rho: float,
+    weight: float,
+    time: float,
+) -> None:
+    """Add the chance to leave for the camera in one straight line, on a random line of its view.
+
+    A bottom of reflectance ``rho`` (zero: a scattering) sends rho/pi cos, water its phase function.
+    """
+    forward = (2.0 * uniform(state) - 1.0) * optics.half_forward
+    right = (2.0 * uniform(state) - 1.0) * optics.half_right
+    wx, wy, wz, ax, ay, az, solid = _line_of_view(optics, medium.refractive_index, forward, right)
+    sent = rho / math.pi * wz
+    if rho == 0.0:
+        cosine = dx * wx + dy * wy + dz * wz
+        if cosine >= peak_cosine:
+            return
+        sent = _density_at(cosine, table)
+    slant = depth / wz
+    length = _reaches_aperture(optics, x + wx * slant, y + wy * slant, 0.0, ax, ay, az)
+    if length < 0.0:
+        return
+    passed = 1.0 - fresnel_reflectance(az, 1.0 / medium.refractive_index)
+    score = weight * sent * solid * passed * math.exp(-attenuation * slant)
+    deposit(histogram, 0, bins, time + slant / medium.speed + length / speed_of_light, score)
+
+
+@kernel
+def _count_arrival(
+    histogram: FloatArray,
+    bins: TimeBins,
+    optics: Optics,
+    medium: Medium,
+    x: float,
+    y: float,
+    dx: float,
+    dy: float,
+    dz: float,
+    weight: float,
+    time: float,
+) -> None:
+    """Count light that leaves the water if it hits the aperture within the field of view."""
+    ux, uy, uz = refracted(dx, dy, dz, 0.0, 0.0, -1.0, medium.refractive_index)
+    length = _reaches_aperture(optics, x, y, 0.0, ux, uy, uz)
+    if length < 0.0:
+        return
+    if _seen_along(optics, ux, uy, uz)[2] >= 0:
+        deposit(histogram, 0, bins, time + length / speed_of_light, weight)
+
+
+@kernel
+def _follow(
+    column: FloatArray,
+    bottom: FloatArray,
+    bins: TimeBins,
+    optics: Optics,
+    medium: Medium,
+    depth: float,
+    rho: float,
+    table: FloatArray,
+    peak_cosine: float,
+    latest: float,
+    state: NDArray[np.uint64],
+    photons: float,
+) -> None:
+    """Follow one photon through flat water of uniform depth, the surface at up = 0."""
+    attenuation = medium.attenuation + medium.scattering
+    forward = (2.0 * uniform(state) - 1.0) * optics.half_forward
+    right = (2.0 * uniform(state) - 1.0) * optics.half_right
+    dx, dy, dz, _ = direction_of(optics, forward, right)
+    length = -optics.position[2] / dz
+    x, y, z = optics.position[0] + dx * length, optics.position[1] + dy * length, 0.0
+    time = length / speed_of_light
+    weight = photons * (1.0 - fresnel_reflectance(-dz, 1.0 / medium.refractive_index))
+    dx, dy, dz = refracted(dx, dy, dz, 0.0, 0.0, 1.0, 1.0 / medium.refractive_index)
+    into, estimated = column, True
+    while time < latest and weight > 0.0:
+        free = exponential(state) / medium.scattering
+        wall = -z / dz if dz > 0.0 else (-depth - z) / dz
+        step = min(free, wall)
+        x, y, z = x + dx * step, y + dy * step, z + dz * step
+        time += step / medium.speed
+        weight *= math.exp(-medium.attenuation * step)
+        if step == free:
+            _score_straight_exit(
+                into, bins, optics, medium, attenuation, state, x, y, -z, dx, dy, dz,
+                table, peak_cosine, 0.0, weight, time,
+            )  # fmt: skip
+            ox, oy, oz = dx, dy, dz
+            dx, dy, dz, factor = _scattered(medium, table, state, dx, dy, dz)
+            weight *= factor
+            estimated = ox * dx + oy * dy + oz * dz < peak_cosine
+        elif dz < 0.0:
+            into = bottom
+            _score_straight_exit(
+                into, bins, optics, medium, attenuation, state, x, y, depth, dx, dy, dz,
+                table, peak_cosine, rho, weight, time,
+            )  # fmt: skip
+            weight *= rho
+            dx, dy, dz = lambert_direction(0.0, 0.0, 1.0, state)
+            z, estimated = -depth, True
+        else:
+            z = 0.0
+            if uniform(state) >= fresnel_reflectance(dz, medium.refractive_index):
+                if not estimated:
+                    _count_arrival(into, bins, optics, medium, x, y, dx, dy, dz, weight, time)
+                return
+            dx, dy, dz = reflected(dx, dy, dz, 0.0, 0.0, 1.0)
+
+
+@kernel
+def _batch(
+    column: FloatArray,
+    bottom: FloatArray,
+    bins: TimeBins,
+    optics: Optics,
+    medium: Medium,
+    depth: float,
+    rho: float,
+    table: FloatArray,
+    peak_cosine: float,
+    latest: float,
+    seed: int,
+    batch: int,
+    walks: int,
+    photons: float,
+) -> None:
+    state = np.empty(2, np.uint64)
+    for i in range(walks):
+        start_stream(state, seed, REFERENCE, 0, batch, i)
+        _follow(
+            column, bottom, bins, optics, medium, depth, rho, table, peak_cosine, latest, state,
+            photons / walks,
+        )  # fmt: skip
+
+
+def reference_flash(
+    *,
+    water: Water,
+    depth: float,
+    reflectance: float,
+    laser: Laser,
+    camera: Camera,
+    receiver: Receiver,
+    pose: Pose,
+    walks_per_batch: int,
+    batches: int,
+    peak_angle: float,
+    seed: int,
+    threads: int = 2,
+) -> FloatArray:
+    """Return photons through the aperture, pooled over all pixels, without the pulse's width.
+
+    The water is uniform, its surface flat at up = 0, its bottom flat and Lambertian.
+
+    Parameters
+    ----------
+    water : Water
+    depth, reflectance : float
+        Depth [m] and reflectance [1] of the bottom.
+    laser, camera, receiver, pose
+        The instrument; bins are the receiver's, height is the pose's third coordinate.
+    walks_per_batch, batches : int
+        The scatter among batches gives the error.
+    peak_angle : float
+        Scatterings by less than this are counted, not estimated [rad].
+    seed, threads : int
+        The result does not depend on the number of threads.
+
+    Returns
+    -------
+    array (batches, 2, bins)
+        Photons from column and bottom, one estimate a batch.
+    """
+    optics = kernel_optics(camera=camera, receiver=receiver, pose=pose)
+    bins = TimeBins(receiver.gate_start, receiver.bin_width, receiver.bins)
+    medium, table = forward_medium(water), water.phase_function.cosine_table(entries=200_001)
+    result = np.zeros((batches, 2, receiver.bins))
+
+    def run(batch: int) -> None:
+        _batch(
+            result[batch, COLUMN : COLUMN + 1], result[batch, BOTTOM : BOTTOM + 1], bins, optics,
+            medium, depth, reflectance, table, math.cos(peak_angle), receiver.gate_end,
+            seed, batch, walks_per_batch, laser.photons_per_pulse,
+        )  # fmt: skip
+
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(run, range(batches)))
+    return result

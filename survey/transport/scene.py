@@ -1,0 +1,117 @@
+"""What a walk meets, as named tuples of numbers and arrays that kernels can take."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.constants import speed_of_light
+
+from survey.optics.water import Water
+from terrain.patches import PatchTable
+from terrain.raycast import SeabedGrid
+from terrain.sea_surface import SeaSurface
+
+FloatArray = NDArray[np.float64]
+
+
+class Medium(NamedTuple):
+    """Water as one walk sees it: what attenuates it, what turns it, how fast it runs."""
+
+    attenuation: float
+    scattering: float
+    sampler: FloatArray
+    sampler_share: float
+    speed: float
+    refractive_index: float
+
+
+class Sea(NamedTuple):
+    """Mean level and facet slopes; ``key`` names the realisation."""
+
+    level: float
+    upwind_deviation: float
+    crosswind_deviation: float
+    wind_east: float
+    wind_north: float
+    facet: float
+    key: np.uint64
+
+
+class Bounds(NamedTuple):
+    """Box in which walks are followed, and the latest time they may reach."""
+
+    west: float
+    east: float
+    south: float
+    north: float
+    latest: float
+
+
+class Layers(NamedTuple):
+    """Planes of the water column and their cells; the first plane lies at ``top``."""
+
+    top: float
+    thickness: float
+    planes: int
+    west: float
+    south: float
+    cell: float
+    across: int
+    along: int
+
+
+class Scene(NamedTuple):
+    """Everything that stands still during one flash."""
+
+    sea: Sea
+    grid: SeabedGrid
+    patches: PatchTable
+    reflectance: FloatArray
+    bounds: Bounds
+    layers: Layers
+
+
+def forward_medium(water: Water) -> Medium:
+    """Return the water for walks of every scattering order: absorbed along, scattered in full."""
+    return Medium(
+        attenuation=water.absorption,
+        scattering=water.scattering,
+        sampler=water.phase_function.sampler_table(),
+        sampler_share=1.0,
+        speed=speed_of_light / water.group_index,
+        refractive_index=water.refractive_index,
+    )
+
+
+def restricted_medium(water: Water, *, split_angle: float) -> Medium:
+    """Return the water for walks after the last turn.
+
+    Only scatterings by at most ``split_angle`` [rad] are followed; all others attenuate. With F
+    the share of the phase function within that angle, the walk scatters by b F and its weight
+    decays by a + b (1 - F): together the full beam attenuation c, the phase function restricted
+    and not renormalised.
+    """
+    share = water.phase_function.fraction_within(split_angle)
+    return Medium(
+        attenuation=water.absorption + water.scattering * (1.0 - share),
+        scattering=water.scattering * share,
+        sampler=water.phase_function.sampler_table(),
+        sampler_share=share,
+        speed=speed_of_light / water.group_index,
+        refractive_index=water.refractive_index,
+    )
+
+
+def kernel_sea(surface: SeaSurface, *, key: int) -> Sea:
+    """Return the realisation ``key`` of a sea surface."""
+    return Sea(
+        level=surface.level,
+        upwind_deviation=surface.upwind_slope_variance**0.5,
+        crosswind_deviation=surface.crosswind_slope_variance**0.5,
+        wind_east=float(np.sin(surface.wind_from)),
+        wind_north=float(np.cos(surface.wind_from)),
+        facet=surface.correlation_length,
+        key=np.uint64(key),
+    )

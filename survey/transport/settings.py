@@ -1,0 +1,52 @@
+"""How much work the Monte Carlo does, and how finely it joins its walks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import radians
+from typing import Literal
+
+
+@dataclass(frozen=True, kw_only=True)
+class TransportSettings:
+    """Numbers of walks and sizes of the places where they are joined.
+
+    Parameters
+    ----------
+    forward_walks_per_m2 : float
+        Walks from the laser per square metre of lit sea surface, all replicates together [1/m2].
+    backward_walks_per_pixel : int
+        Walks from each pixel, all replicates together.
+    replicates : int
+        Independent repetitions whose scatter gives the standard error, at least 2.
+    split_angle : float
+        A scattering by more than this is a turn, at which the two walks meet [rad].
+    patch_size : float
+        Side of the bottom patches on which arrivals are paired [m].
+    layer_thickness : float
+        Spacing of the planes on which the water column is paired [m].
+    cell_size : float
+        Side of the cells of such a plane [m].
+    illumination : {"flood", "isolated"}
+        Whether a pixel sees the light launched into every cone or into its own alone.
+    column_pairs : int
+        Forward crossings drawn for each backward crossing of the same cell.
+    column_stride : int
+        One backward walk in this many takes part in the water column.
+    """
+
+    forward_walks_per_m2: float = 16.0
+    backward_walks_per_pixel: int = 64
+    replicates: int = 8
+    split_angle: float = radians(30.0)
+    patch_size: float = 1.0
+    layer_thickness: float = 0.5
+    cell_size: float = 2.0
+    illumination: Literal["flood", "isolated"] = "flood"
+    column_pairs: int = 4
+    column_stride: int = 4
+
+    @property
+    def backward_walks_per_replicate(self) -> int:
+        """Walks from each pixel in one replicate."""
+        return max(1, self.backward_walks_per_pixel // self.replicates)
