@@ -1,0 +1,40 @@
+"""Who watches a mission while it runs."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+
+class Watcher(Protocol):
+    """What a mission tells of its progress.
+
+    Methods are called from one thread, frames in any order.
+    """
+
+    def started(self, total: int) -> None:
+        """So many frames are to be flown."""
+
+    def frame_done(self, index: int, seconds: float) -> None:
+        """A frame is flown; it took so many seconds of one worker."""
+
+    def finished(self, summary: str) -> None:
+        """All is written; the summary is one or more lines for the user."""
+
+
+class Unwatched:
+    """A watcher that does nothing.
+
+    Examples
+    --------
+    >>> watcher: Watcher = Unwatched()
+    >>> watcher.started(3)
+    """
+
+    def started(self, total: int) -> None:
+        """Do nothing."""
+
+    def frame_done(self, index: int, seconds: float) -> None:
+        """Do nothing."""
+
+    def finished(self, summary: str) -> None:
+        """Do nothing."""

@@ -1,0 +1,155 @@
+"""A sound scenario, and variations of it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from copy import deepcopy
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any, cast
+
+from survey.scenario import sections
+from survey.scenario.faults import Fault, ScenarioError
+from survey.scenario.rules import broken_rules, gate_start_ns
+from survey.scenario.seabed_sections import SeabedSection
+from survey.scenario.toml_text import to_toml
+from survey.scenario.validate import validate
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scenario:
+    """The sections of a scenario file in the file's own units.
+
+    `survey.scenario.components` turns them into parts in SI units and radians.
+
+    Parameters
+    ----------
+    mission, flight, laser, camera, receiver, detector, water, surface, seabed, sun, transport,
+    processing, run : Section
+        One for each section of the file, defaults filled in.
+    name : str
+        The file's name as it stands in faults.
+    folder : Path
+        Folder from which files named in the scenario are reached.
+    given : Mapping
+        The tables as written, before defaults.
+    """
+
+    mission: sections.Mission
+    flight: sections.Flight
+    laser: sections.Laser
+    camera: sections.Camera
+    receiver: sections.Receiver
+    detector: sections.Detector
+    water: sections.Water
+    surface: sections.Surface
+    seabed: SeabedSection
+    sun: sections.Sun
+    transport: sections.Transport
+    processing: sections.Processing
+    run: sections.Run
+    name: str = field(compare=False)
+    folder: Path = field(compare=False)
+    given: Mapping[str, Any] = field(compare=False, repr=False)
+
+    @classmethod
+    def from_tables(cls, tables: Mapping[str, Any], *, name: str, folder: Path) -> Scenario:
+        """Return the scenario that plain tables describe.
+
+        Raises
+        ------
+        ScenarioError
+            With every fault of the tables.
+        """
+        sound, faults = validate(tables)
+        faults += broken_rules(sound, folder)
+        if faults:
+            raise ScenarioError(name, faults)
+        return cls(name=name, folder=folder, given=tables, **cast("dict[str, Any]", sound))
+
+    def replace(self, **changes: Any) -> Scenario:
+        """Return a checked variation: ``scenario.replace(**{"water.type": "clear"})``.
+
+        A dotted key changes one value, a section's name with a table changes the whole section,
+        and the value None goes back to the default.
+
+        Raises
+        ------
+        ScenarioError
+            When the variation is not sound.
+        """
+        tables = with_changes(self.given, changes, name=self.name)
+        return Scenario.from_tables(tables, name=self.name, folder=self.folder)
+
+    def to_toml(self, *, beside: Path | None = None) -> str:
+        """Return the resolved scenario as TOML, with every default.
+
+        Parameters
+        ----------
+        beside : Path, optional
+            Folder in which the text will lie: the files that it names are then given relative to
+            that folder, otherwise as they were written.
+        """
+        names = [part.name for part in fields(self) if part.compare]
+        tables = {name: getattr(self, name).model_dump() for name in names}
+        self._resolve(tables)
+        if beside is not None:
+            for table in (tables["seabed"], *tables["seabed"]["objects"]):
+                if "file" in table:
+                    path = os.path.relpath(self.folder / table["file"], beside)
+                    table["file"] = Path(path).as_posix()
+        return to_toml(tables)
+
+    def _resolve(self, tables: dict[str, Any]) -> None:
+        """Fill in the defaults that follow from other sections."""
+        from survey.optics.water import PAPER_COEFFICIENTS
+
+        absorption, scattering = PAPER_COEFFICIENTS[self.water.type]
+        _default(tables["water"], "absorption_per_m", absorption)
+        _default(tables["water"], "scattering_per_m", scattering)
+        _default(tables["receiver"], "gate_start_ns", gate_start_ns(self.receiver, self.flight))
+        _default(tables["processing"], "echo_gate_ns", self.laser.pulse_width_ns)
+
+
+def _default(table: dict[str, Any], key: str, value: float) -> None:
+    if table[key] is None:
+        table[key] = value
+
+
+def with_changes(
+    tables: Mapping[str, Any], changes: Mapping[str, Any], *, name: str
+) -> dict[str, Any]:
+    """Return a copy of plain tables with dotted keys changed.
+
+    Examples
+    --------
+    >>> with_changes({"water": {"type": "clear"}}, {"water.type": "harbor"}, name="reef.toml")
+    {'water': {'type': 'harbor'}}
+
+    Raises
+    ------
+    ScenarioError
+        When a dotted key leads through something that is not a table.
+    """
+    changed, faults = deepcopy(dict(tables)), []
+    for key, value in changes.items():
+        try:
+            _change(changed, key.split("."), value)
+        except (AttributeError, TypeError, IndexError, ValueError):
+            faults.append(Fault(key, "there is no such place. Write section.key=value."))
+    if faults:
+        raise ScenarioError(name, faults)
+    return changed
+
+
+def _change(tables: dict[str, Any], steps: list[str], value: Any) -> None:
+    place: Any = tables
+    for step in steps[:-1]:
+        place = place[int(step)] if isinstance(place, list) else place.setdefault(step, {})
+    if isinstance(place, list):
+        place[int(steps[-1])] = value
+    elif value is None:
+        place.pop(steps[-1], None)
+    else:
+        place[steps[-1]] = value

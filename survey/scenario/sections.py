@@ -1,0 +1,151 @@
+"""The sections of a scenario file: their keys, units, defaults and bounds."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from typing import Annotated, Literal
+
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
+
+Positive = Annotated[float, Field(gt=0.0)]
+NotNegative = Annotated[float, Field(ge=0.0)]
+Fraction = Annotated[float, Field(gt=0.0, le=1.0)]
+Count = Annotated[int, Field(ge=1)]
+Bearing = Annotated[float, Field(ge=0.0, lt=360.0)]
+Text = Annotated[str, Field(min_length=1)]
+
+
+class Section(BaseModel):
+    """One section; any may name where its numbers come from (``source = "assumed"``)."""
+
+    model_config = ConfigDict(
+        extra="forbid", strict=True, frozen=True, allow_inf_nan=False, validate_default=True
+    )
+
+    source: Text | None = None
+
+
+class Mission(Section):
+    """What is simulated, where on the map, and from which seed."""
+
+    title: Text
+    description: str = ""
+    expect: str = ""
+    start_utc: AwareDatetime = datetime(2026, 6, 21, 10, 0, 0, tzinfo=UTC)
+    seed: Annotated[int, Field(ge=0, lt=2**63)] = 1
+    crs_epsg: Count = 25832
+    vertical_epsg: Count = 5714
+
+
+class Flight(Section):
+    """Parallel lines; the height counts from the water level, sidelap at the water surface."""
+
+    height_m: Positive = 200.0
+    speed_m_s: Positive = 100.0
+    flash_rate_hz: Positive = 1.0
+    start_easting_m: float
+    start_northing_m: float
+    heading_deg: Bearing
+    frames_per_line: Count
+    lines: Count = 1
+    sidelap: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.2
+    turn: Literal["alternate", "same"] = "alternate"
+    turn_time_s: NotNegative = 60.0
+
+
+class Laser(Section):
+    """The pulse and how it fills the field of view."""
+
+    pulse_energy_j: Positive = 1.0
+    wavelength_nm: Annotated[float, Field(ge=400.0, le=700.0)] = 532.0
+    pulse_width_ns: Positive = 10.0
+    illumination: Literal["flood", "isolated"] = "flood"
+
+
+class Camera(Section):
+    """The pixel matrix; a pixel has its footprint at the design range, in air."""
+
+    rows: Count = 32
+    columns: Count = 64
+    pixel_footprint_m: Positive = 2.0
+    design_range_m: Positive = 250.0
+    long_side: Literal["along", "across"] = "along"
+
+
+class Receiver(Section):
+    """Optics and gate; without `gate_start_ns` the gate opens 30 ns before the nadir surface."""
+
+    aperture_radius_m: Positive
+    filter_width_nm: Positive
+    optics_transmission: Fraction = 1.0
+    gate_start_ns: NotNegative | None = None
+    bin_width_ns: Positive = 1.0
+    bins: Annotated[int, Field(ge=1, le=100_000)] = 300
+
+
+class Detector(Section):
+    """A photon counter."""
+
+    kind: Literal["ideal"] = "ideal"
+    quantum_efficiency: Fraction
+    dark_count_rate_hz: NotNegative
+    max_counts_per_bin: Annotated[int, Field(ge=1, le=65_535)] = 65_535
+
+
+class Water(Section):
+    """A measured water; absorption and scattering may be overridden."""
+
+    type: Literal["clear", "coastal", "harbor"]
+    absorption_per_m: NotNegative | None = None
+    scattering_per_m: NotNegative | None = None
+    refractive_index: Annotated[float, Field(ge=1.0, le=2.0)] = 1.3415
+    group_index: Annotated[float, Field(ge=1.0, le=2.0)] = 1.36
+
+
+class Surface(Section):
+    """The water level in the vertical datum, and the wind on it."""
+
+    water_level_m: float
+    wind_speed_m_s: Annotated[float, Field(ge=0.0, le=20.0)] = 5.0
+    wind_from_deg: Bearing = 0.0
+    slope_correlation_length_m: Positive = 0.1
+
+
+class Sun(Section):
+    """Background light: by the sun's place and the air, or a stated radiance instead."""
+
+    day: bool = True
+    zenith_deg: Annotated[float, Field(ge=0.0, lt=90.0)] = 20.0
+    optical_thickness: NotNegative = 0.3
+    solar_irradiance_w_m2_nm: NotNegative = 1.95
+    legendre_moment: Annotated[float, Field(ge=-3.0, le=3.0)] = 1.5
+    water_reflectance: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0097
+    radiance_w_m2_um_sr: NotNegative | None = None
+
+
+class Transport(Section):
+    """How many walks the Monte Carlo takes and where it joins them."""
+
+    forward_walks_per_m2: Positive = 16.0
+    backward_walks_per_pixel: Count = 64
+    replicates: Annotated[int, Field(ge=2)] = 8
+    split_angle_deg: Annotated[float, Field(gt=0.0, lt=90.0)] = 30.0
+    patch_size_m: Positive = 1.0
+    layer_thickness_m: Positive = 0.5
+    cell_size_m: Positive = 2.0
+
+
+class Processing(Section):
+    """From counts to points and grids; without `echo_gate_ns` an echo is one pulse width long."""
+
+    false_alarm_rate: Annotated[float, Field(gt=0.0, lt=1.0)] = 1e-3
+    echo_gate_ns: Positive | None = None
+    thinning_m: NotNegative = 1.0
+    grid_m: Positive = 2.0
+    keep_waveforms: Literal["none", "sampled", "all"] = "none"
+
+
+class Run(Section):
+    """How the work is shared out; 0 workers means one for each core."""
+
+    workers: Annotated[int, Field(ge=0)] = 0
