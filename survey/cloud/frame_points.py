@@ -1,0 +1,186 @@
+"""One frame's echoes as points on the map."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import median_filter
+
+from survey.cloud.georeference import WaterPath, bend_at_surface, place_in_air, place_in_water
+from survey.cloud.points import PointClass, PointCloud
+from survey.cloud.ranging import Echo
+from survey.cloud.truth import TrueTargets
+from survey.flight.pose import Frame
+
+if TYPE_CHECKING:
+    from terrain.seabed import Seabed
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+LAND_ABOVE_WATER = 0.75
+ENOUGH_SURFACE_ECHOES = 20
+OBJECT_ABOVE_BOTTOM = 1.0
+OBJECT_NEIGHBOURHOOD = 15
+
+
+@dataclass(frozen=True, kw_only=True)
+class WaterLine:
+    """What the first echoes say: where water is, and at which level.
+
+    Parameters
+    ----------
+    level : float
+        Estimated elevation of the water [m].
+    land, water : array (rows, columns)
+        Pixels whose first echo lies on land, and pixels over water.
+    first : array (rows, columns, 3)
+        Places of the first echoes [m].
+    path : WaterPath
+        The pixel rays' way into the water at that level.
+    """
+
+    level: float
+    land: BoolArray
+    water: BoolArray
+    first: FloatArray
+    path: WaterPath
+
+    @property
+    def surface_time(self) -> FloatArray:
+        """Two-way time to the water of each pixel [s], nan on land."""
+        return np.where(self.water, self.path.air_time, np.nan)
+
+
+def find_water(
+    *, first: Echo, frame: Frame, rays: FloatArray, expected_level: float, refractive_index: float
+) -> WaterLine:
+    """Tell land from water by the first echoes and estimate the water level.
+
+    The level is the median elevation of the first echoes within 0.75 m of the expected level, or
+    that level itself where there are fewer than 20. What lies more than 0.75 m above it is land.
+    """
+    position = frame.pose.position
+    places = place_in_air(position=position, rays=rays, time=first.time)
+    elevation = places[..., 2]
+    near = np.abs(elevation - expected_level) <= LAND_ABOVE_WATER
+    enough = near.sum() >= ENOUGH_SURFACE_ECHOES
+    level = float(np.median(elevation[near])) if enough else expected_level
+    land = elevation > level + LAND_ABOVE_WATER
+    return WaterLine(
+        level=level,
+        land=land,
+        water=~land,
+        first=places,
+        path=bend_at_surface(
+            position=position, rays=rays, level=level, refractive_index=refractive_index
+        ),
+    )
+
+
+def surface_points(
+    *, line: WaterLine, first: Echo, frame: Frame, targets: TrueTargets
+) -> PointCloud:
+    """Return the first echoes on the water: class 41."""
+    on_water = first.found & ~line.land
+    on_water &= np.abs(line.first[..., 2] - line.level) <= LAND_ABOVE_WATER
+    wet = targets.depth >= 0.0
+    return _cloud(
+        which=on_water,
+        frame=frame,
+        position=line.first,
+        uncorrected=line.first,
+        truth=targets.surface,
+        classification=np.full(on_water.shape, PointClass.WATER_SURFACE),
+        true_classification=np.where(wet, PointClass.WATER_SURFACE, PointClass.GROUND),
+        true_elevation=targets.surface[..., 2],
+        depth=np.zeros(on_water.shape),
+        echo=first,
+    )
+
+
+def bottom_points(
+    *,
+    line: WaterLine,
+    first: Echo,
+    bottom: Echo,
+    frame: Frame,
+    rays: FloatArray,
+    targets: TrueTargets,
+    seabed: Seabed,
+    group_index: float,
+) -> PointCloud:
+    """Return one point a pixel: bottom (40), object (43), land (2), or none found (45)."""
+    found = bottom.found
+    corrected = place_in_water(path=line.path, time=bottom.time, group_index=group_index)
+    straight = place_in_air(position=frame.pose.position, rays=rays, time=bottom.time)
+    on_land, in_water = line.land[..., None], found[..., None]
+    position = np.where(on_land, line.first, np.where(in_water, corrected, line.path.entry))
+    classification = np.select(
+        [line.land, found & _stands_out(corrected[..., 2], found), found],
+        [PointClass.GROUND, PointClass.SUBMERGED_OBJECT, PointClass.BATHYMETRIC],
+        PointClass.NO_BOTTOM_FOUND,
+    )
+    return _cloud(
+        which=np.ones(found.shape, np.bool_),
+        frame=frame,
+        position=position,
+        uncorrected=np.where(on_land, line.first, np.where(in_water, straight, position)),
+        truth=targets.position,
+        classification=classification,
+        true_classification=targets.classification,
+        true_elevation=seabed.elevation_at(
+            position[..., 0].ravel(), position[..., 1].ravel()
+        ).reshape(found.shape),
+        depth=np.where(found, line.level - position[..., 2], 0.0),
+        echo=Echo(
+            time=np.where(line.land, first.time, bottom.time),
+            counts=np.where(line.land, first.counts, bottom.counts),
+            snr=np.where(line.land, first.snr, bottom.snr),
+        ),
+    )
+
+
+def _stands_out(elevation: FloatArray, found: BoolArray) -> BoolArray:
+    """Tell which bottom points stand more than 1 m above the median of 15 x 15 pixels."""
+    if not found.any():
+        return found
+    filled = np.where(found, elevation, np.median(elevation[found]))
+    return filled - median_filter(filled, size=OBJECT_NEIGHBOURHOOD) > OBJECT_ABOVE_BOTTOM
+
+
+def _cloud(
+    *,
+    which: BoolArray,
+    frame: Frame,
+    position: FloatArray,
+    uncorrected: FloatArray,
+    truth: FloatArray,
+    classification: NDArray[np.int64],
+    true_classification: NDArray[np.int64] | NDArray[np.uint8],
+    true_elevation: FloatArray,
+    depth: FloatArray,
+    echo: Echo,
+) -> PointCloud:
+    """Return the chosen pixels of one frame as points, in the order of rows and columns."""
+    row, column = np.nonzero(which)
+    count = len(row)
+    return PointCloud(
+        position=position[which],
+        uncorrected=uncorrected[which],
+        truth=truth[which],
+        classification=classification[which].astype(np.uint8),
+        true_classification=true_classification[which].astype(np.uint8),
+        true_elevation=true_elevation[which],
+        time=frame.time + np.nan_to_num(echo.time[which]),
+        depth=depth[which],
+        counts=np.nan_to_num(echo.counts[which]).astype(np.float32),
+        snr=np.nan_to_num(echo.snr[which]).astype(np.float32),
+        frame=np.full(count, frame.index, np.uint32),
+        line=np.full(count, frame.line, np.uint16),
+        row=row.astype(np.uint16),
+        column=column.astype(np.uint16),
+    )

@@ -1,0 +1,127 @@
+"""The point cloud of a mission: measurement with truth beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class PointClass(IntEnum):
+    """LAS 1.4 classes in use (ASPRS topo-bathy profile)."""
+
+    GROUND = 2
+    BATHYMETRIC = 40
+    WATER_SURFACE = 41
+    SUBMERGED_OBJECT = 43
+    NO_BOTTOM_FOUND = 45
+
+
+class Outcome(IntEnum):
+    """What became of the bottom in one pixel of one frame."""
+
+    FOUND = 0
+    DRY = 1
+    FALSE_BOTTOM = 2
+    TOO_WEAK = 3
+    MERGED_WITH_SURFACE = 4
+    OUTSIDE_GATE = 5
+    SATURATED = 6
+    CHANCE = 7
+
+
+@dataclass(frozen=True, kw_only=True)
+class PointCloud:
+    """Points as columns of equal length n.
+
+    Parameters
+    ----------
+    position : array (n, 3)
+        Easting, northing, up in the scene's local frame [m], corrected for refraction.
+    uncorrected : array (n, 3)
+        The same echo placed along a straight ray at the speed of light in air [m].
+    truth : array (n, 3)
+        Where the unscattered ray of the pixel centre truly meets what the point claims [m].
+    classification : array (n,)
+        `PointClass`.
+    true_classification : array (n,)
+        `PointClass` of what is truly there.
+    true_elevation : array (n,)
+        True elevation of seabed or sea surface at the measured place [m].
+    time : array (n,)
+        Seconds since the start of the mission [s].
+    depth : array (n,)
+        Depth under the estimated water surface, positive down [m]; 0 for surface points.
+    counts : array (n,)
+        Photo-electrons of the echo above the expected noise [1].
+    snr : array (n,)
+        Those counts over the square root of all counts in the gate [1].
+    frame, line, row, column : array (n,)
+        Address of the pixel that saw the point.
+    """
+
+    position: NDArray[np.float64]
+    uncorrected: NDArray[np.float64]
+    truth: NDArray[np.float64]
+    classification: NDArray[np.uint8]
+    true_classification: NDArray[np.uint8]
+    true_elevation: NDArray[np.float64]
+    time: NDArray[np.float64]
+    depth: NDArray[np.float64]
+    counts: NDArray[np.float32]
+    snr: NDArray[np.float32]
+    frame: NDArray[np.uint32]
+    line: NDArray[np.uint16]
+    row: NDArray[np.uint16]
+    column: NDArray[np.uint16]
+
+    def __len__(self) -> int:
+        return int(self.position.shape[0])
+
+    def select(self, which: NDArray[Any]) -> PointCloud:
+        """Return the points that a mask or an index array names, in its order."""
+        return PointCloud(**{name: column[which] for name, column in self.columns().items()})
+
+    def columns(self) -> dict[str, NDArray[Any]]:
+        """Return the columns by name."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    @staticmethod
+    def concatenate(clouds: Sequence[PointCloud]) -> PointCloud:
+        """Return all points of several clouds, in their order."""
+        names = [field.name for field in fields(PointCloud)]
+        return PointCloud(
+            **{name: np.concatenate([getattr(cloud, name) for cloud in clouds]) for name in names}
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class PixelRecord:
+    """Per-pixel truth and outcome of one frame, each array of the camera's shape.
+
+    Parameters
+    ----------
+    true_position : array (rows, columns, 3)
+        Where the pixel centre's unscattered ray meets the seabed or land [m, local frame].
+    true_depth : array
+        Depth of that place below the water level, negative on land [m].
+    detection_probability : array
+        Probability, eq. (11) of [Lisenko2017], that the bottom echo fires its threshold.
+    outcome : array
+        `Outcome` of the pixel.
+    bottom_counts : array
+        Expected photo-electrons of the bottom echo in its best gate [1].
+    monte_carlo_relative_error : array
+        Standard error of `bottom_counts` over itself [1].
+    """
+
+    true_position: NDArray[np.float64]
+    true_depth: NDArray[np.float64]
+    detection_probability: NDArray[np.float64]
+    outcome: NDArray[np.uint8]
+    bottom_counts: NDArray[np.float64]
+    monte_carlo_relative_error: NDArray[np.float64]

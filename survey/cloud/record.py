@@ -1,0 +1,91 @@
+"""Truth and outcome of every pixel of one frame."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from survey.cloud.georeference import depth_of
+from survey.cloud.points import PixelRecord, PointCloud
+from survey.cloud.ranging import (
+    GUARD_GATES,
+    Echo,
+    NoiseModel,
+    bottom_detection_probability,
+    gate_sums,
+)
+from survey.cloud.truth import TrueTargets, outcomes
+from survey.transport.waveforms import Waveforms
+
+FloatArray = NDArray[np.float64]
+
+
+def pixel_record(
+    *,
+    waveforms: Waveforms,
+    saturated: NDArray[np.bool_],
+    bottom: Echo,
+    points: PointCloud,
+    targets: TrueTargets,
+    noise: NoiseModel,
+    group_index: float,
+) -> PixelRecord:
+    """Return what each pixel could have seen, and what became of it.
+
+    Parameters
+    ----------
+    waveforms : Waveforms
+        Expected photo-electrons, the bottom's among them.
+    saturated : array (rows, columns)
+        Pixels with a full bin.
+    bottom : Echo
+        The bottom echoes that were found.
+    points : PointCloud
+        The frame's bottom points, one a pixel in the order of rows and columns.
+    targets : TrueTargets
+        Where the pixels truly look.
+    noise : NoiseModel
+        Gates and thresholds.
+    group_index : float
+        Of the water [1].
+    """
+    expected = waveforms.origin("bottom")
+    probability = bottom_detection_probability(bottom=expected, noise=noise)
+    counts, spread = _best_gate(expected, np.sqrt(waveforms.variance[2]), noise.gate_bins)
+    error = (points.position[:, 2] - points.true_elevation).reshape(probability.shape)
+    width = noise.bin_width
+    return PixelRecord(
+        true_position=targets.position,
+        true_depth=targets.depth,
+        detection_probability=probability,
+        outcome=outcomes(
+            targets=targets,
+            error=error,
+            found=bottom.found,
+            saturated=saturated,
+            probability=probability,
+            gate=(noise.bin_start, noise.bin_start + expected.shape[-1] * width),
+            shallowest=depth_of(
+                time=GUARD_GATES * noise.gate_bins * width, group_index=group_index
+            ),
+        ),
+        bottom_counts=counts,
+        monte_carlo_relative_error=np.divide(
+            spread, counts, out=np.zeros_like(counts), where=counts > 0.0
+        ),
+    )
+
+
+def _best_gate(
+    expected: FloatArray, error: FloatArray, gate_bins: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return counts and their error in each pixel's strongest gate.
+
+    The pulse makes the errors of neighbouring bins rise and fall together, so they are summed.
+    """
+    sums = gate_sums(expected, gate_bins)
+    best = sums.argmax(axis=-1)[..., None]
+    return (
+        np.take_along_axis(sums, best, -1)[..., 0],
+        np.take_along_axis(gate_sums(error, gate_bins), best, -1)[..., 0],
+    )

@@ -1,0 +1,163 @@
+"""A mission: every flash from laser to points, then all of them to products."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from pathlib import Path
+
+from survey.cloud.frame_points import bottom_points, find_water, surface_points
+from survey.cloud.georeference import pixel_rays
+from survey.cloud.ranging import first_echo, last_echo
+from survey.cloud.record import pixel_record
+from survey.cloud.truth import true_targets
+from survey.errors import UserError
+from survey.flight.pose import Frame
+from survey.preparation import Mission, prepare
+from survey.products.frame_file import FrameResult
+from survey.products.performance import Stopwatch, write_performance
+from survey.products.run_products import write_products
+from survey.progress import Unwatched, Watcher
+from survey.run_folder import RunFolder
+from survey.scenario.scenario import Scenario
+from survey.transport.random import COUNTS, chance
+
+
+def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
+    """Fly one flash: expected light, counts, ranges, points, and the truth beside them."""
+    engine, noise, water = mission.engine, mission.noise, mission.engine.water
+    waveforms = engine.flash(pose=frame.pose, frame=frame.index)
+    draws = chance(seed=engine.seed, purpose=COUNTS, frame=frame.index)
+    counts = mission.detector.count(waveforms.total + noise.steady, draws)
+
+    rays = pixel_rays(camera=mission.camera, pose=frame.pose)
+    first = first_echo(counts=counts, noise=noise)
+    line = find_water(
+        first=first,
+        frame=frame,
+        rays=rays,
+        expected_level=engine.surface.level,
+        refractive_index=water.refractive_index,
+    )
+    bottom = last_echo(counts=counts, noise=noise, surface_time=line.surface_time)
+
+    targets = true_targets(
+        seabed=mission.seabed, surface=engine.surface, water=water, pose=frame.pose, rays=rays
+    )
+    on_surface = surface_points(line=line, first=first, frame=frame, targets=targets)
+    on_bottom = bottom_points(
+        line=line,
+        first=first,
+        bottom=bottom,
+        frame=frame,
+        rays=rays,
+        targets=targets,
+        seabed=mission.seabed,
+        group_index=water.group_index,
+    )
+    record = pixel_record(
+        waveforms=waveforms,
+        saturated=mission.detector.saturated(counts),
+        bottom=bottom,
+        points=on_bottom,
+        targets=targets,
+        noise=noise,
+        group_index=water.group_index,
+    )
+    return FrameResult(bottom=on_bottom, surface=on_surface, record=record)
+
+
+def fly(
+    scenario: Scenario,
+    folder: Path,
+    *,
+    workers: int = 0,
+    frames: range | None = None,
+    watch: Watcher | None = None,
+) -> Path:
+    """Fly a mission into a run folder, and go on where an earlier run of it stopped.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What to fly.
+    folder : Path
+        Run folder: new, or of the same scenario.
+    workers : int
+        Frames flown at once; 0 is one for each core. The products do not depend on it.
+    frames : range, optional
+        Only these frames; the products cover all frames that are then present.
+    watch : Watcher, optional
+        Is told of the progress.
+
+    Returns
+    -------
+    Path
+        The run folder.
+
+    Raises
+    ------
+    OtherRunError
+        When the folder belongs to another scenario or to other code.
+    ValueError
+        When the flight leaves the seabed, or nothing at all was found: the text says why.
+    """
+    watch, clock = watch or Unwatched(), Stopwatch()
+    mission = prepare(scenario)
+    run = RunFolder.open(folder, scenario)
+    chosen = set(frames if frames is not None else range(len(mission.frames)))
+    missing = [f for f in mission.frames if f.index in chosen and f.index not in run.whole]
+    watch.started(len(missing))
+    for index, result, seconds in _flown(mission, missing, workers or os.cpu_count() or 1):
+        run.keep(index, result)
+        clock.add(seconds)
+        watch.frame_done(index, seconds)
+    present = [frame for frame in mission.frames if frame.index in run.whole]
+    if not present:
+        raise UserError(f"{folder}: no frame was flown. Choose frames with --frames A:B")
+    found = write_products(
+        folder,
+        results=run.read([frame.index for frame in present]),
+        frames=present,
+        seabed=mission.seabed,
+        settings=mission.products,
+    )
+    write_performance(folder / "performance.json", clock)
+    watch.finished(summary(folder, found))
+    return folder
+
+
+def summary(folder: Path, metrics: dict[str, object]) -> str:
+    """Return what a run achieved in a few lines for the user."""
+    return "\n".join(
+        (
+            f"{metrics['points_bottom']} bottom points, {metrics['points_surface']} surface points",
+            f"bottom against the true seabed: bias {_metres(metrics['bias_m'])}, "
+            f"95 % within {_metres(metrics['p95_abs_error_m'])}, "
+            f"false bottoms {metrics['false_bottoms']}",
+            f"written to {folder}: report.html, bottom.laz, bathymetry.tif and others",
+        )
+    )
+
+
+def _metres(value: object) -> str:
+    return f"{value:.3f} m" if isinstance(value, float) else "not measured"
+
+
+def _flown(
+    mission: Mission, frames: Sequence[Frame], workers: int
+) -> Iterator[tuple[int, FrameResult, float]]:
+    """Yield the frames as they are done; the kernels run without the interpreter lock."""
+
+    def timed(frame: Frame) -> tuple[int, FrameResult, float]:
+        start = time.perf_counter()
+        return frame.index, fly_frame(mission, frame), time.perf_counter() - start
+
+    pool = ThreadPoolExecutor(workers)
+    try:
+        for flown in as_completed([pool.submit(timed, frame) for frame in frames]):
+            yield flown.result()
+    finally:
+        pool.shutdown(cancel_futures=True)

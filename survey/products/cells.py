@@ -1,0 +1,119 @@
+"""Square cells on the map, shared by grids and coverage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from survey.products.writing import ProductError
+
+if TYPE_CHECKING:
+    from affine import Affine
+
+FloatArray = NDArray[np.float64]
+MAX_CELLS = 100_000_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class CellGrid:
+    """A north-up raster whose edges are whole multiples of the cell size; row 0 is in the north.
+
+    Parameters
+    ----------
+    west, north : float
+        Outer corner on the map [m].
+    cell_size : float
+        Side of a cell [m].
+    rows, columns : int
+        Number of cells southward and eastward.
+
+    Examples
+    --------
+    >>> cells = CellGrid.covering(np.array([[500001.0, 11.0], [500007.0, 19.0]]), cell_size=4.0)
+    >>> cells.west, cells.north, cells.shape
+    (500000.0, 20.0, (3, 2))
+    >>> cells.index_of(np.array([[500001.0, 19.0], [500007.0, 8.5]]))
+    array([0, 5])
+    """
+
+    west: float
+    north: float
+    cell_size: float
+    rows: int
+    columns: int
+
+    @classmethod
+    def covering(cls, on_map: FloatArray, *, cell_size: float) -> CellGrid:
+        """Return the smallest such raster that holds the places (n, 2 or 3) [m].
+
+        Raises
+        ------
+        ProductError
+            If there are no places or the raster would have more than 1e8 cells.
+        """
+        if on_map.shape[0] == 0:
+            raise ProductError("grid: no points to grid. See the outcomes of the pixels for why")
+        west, south = np.floor(on_map[:, :2].min(axis=0) / cell_size)
+        east, north = np.floor(on_map[:, :2].max(axis=0) / cell_size) + 1
+        if not (north - south) * (east - west) <= MAX_CELLS:
+            raise ProductError(
+                f"grid: {north - south:.0f} x {east - west:.0f} cells. Use larger cells than "
+                f"{cell_size:g} m, or leave out points that lie far off"
+            )
+        return cls(
+            west=float(west * cell_size),
+            north=float(north * cell_size),
+            cell_size=cell_size,
+            rows=int(north - south),
+            columns=int(east - west),
+        )
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return self.rows, self.columns
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """West, east, south, north [m]."""
+        east = self.west + self.columns * self.cell_size
+        south = self.north - self.rows * self.cell_size
+        return self.west, east, south, self.north
+
+    @property
+    def transform(self) -> Affine:
+        """From (column, row) to the map, as rasterio has it."""
+        from affine import Affine
+
+        return Affine(self.cell_size, 0.0, self.west, 0.0, -self.cell_size, self.north)
+
+    def index_of(self, on_map: FloatArray) -> NDArray[np.intp]:
+        """Return the flat index, row by row, of the cell of each place inside (n,)."""
+        column = np.floor((on_map[:, 0] - self.west) / self.cell_size).astype(np.intp)
+        row = self.rows - 1 - np.floor((on_map[:, 1] - self.extent[2]) / self.cell_size)
+        return np.asarray(row.astype(np.intp) * self.columns + column)
+
+    def contains(self, on_map: FloatArray) -> NDArray[np.bool_]:
+        """Return which of the places (n, 2 or 3) lie inside (n,)."""
+        west, east, south, north = self.extent
+        x, y = on_map[:, 0], on_map[:, 1]
+        return np.asarray((x >= west) & (x < east) & (y >= south) & (y < north))
+
+    def centres(self) -> FloatArray:
+        """Return the map coordinates of the cells' centres (rows, columns, 2) [m]."""
+        x = self.west + (np.arange(self.columns) + 0.5) * self.cell_size
+        y = self.north - (np.arange(self.rows) + 0.5) * self.cell_size
+        return np.stack(np.meshgrid(x, y), axis=-1)
+
+
+def inside_ring(cells: CellGrid, ring: FloatArray) -> NDArray[np.bool_]:
+    """Return the cells (rows, columns) whose centre lies in the ring of corners (n, 2) [m]."""
+    from rasterio.features import geometry_mask
+
+    corners = [*ring.tolist(), ring[0].tolist()]
+    polygon = {"type": "Polygon", "coordinates": [corners]}
+    inside = geometry_mask([polygon], cells.shape, cells.transform, invert=True)
+    return np.asarray(inside, dtype=np.bool_)

@@ -1,0 +1,222 @@
+"""Where the survey saw the bottom, where it did not, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from survey.cloud.points import Outcome, PixelRecord
+from survey.products.cells import CellGrid, inside_ring
+from survey.products.json_file import json_bytes
+from survey.products.pixels import SEEN
+from survey.products.writing import ProductError, write_whole
+from terrain.map_frame import MapFrame
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
+
+FloatArray = NDArray[np.float64]
+OUTSIDE_AREA = -2
+GAP = -1
+GAP_CAUSE = "gap between frames"
+SEEN_RANK = 10**9
+"""Lifts a single pixel that saw the ground above any number that did not."""
+
+MIN_HOLE_AREA = 50.0
+DEGREE_DECIMALS = 8
+"""1e-8 degrees are about a millimetre."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CoverageMap:
+    """What became of the bottom, by cells, row 0 in the north.
+
+    Parameters
+    ----------
+    cells : CellGrid
+        Where the cells lie on the map.
+    state : array (rows, columns) of int16
+        `OUTSIDE_AREA`, `GAP` where no pixel looked, else an `Outcome`: FOUND or DRY in covered
+        cells, the commonest failure in the others.
+    """
+
+    cells: CellGrid
+    state: NDArray[np.int16]
+
+    @property
+    def covered(self) -> NDArray[np.bool_]:
+        """Cells (rows, columns) where seabed or land was seen."""
+        return np.isin(self.state, SEEN)
+
+    def cause(self, state: int) -> str:
+        """Return the name of a hole's cause."""
+        return GAP_CAUSE if state == GAP else Outcome(state).name.lower()
+
+
+def surveyed_hull(records: Sequence[PixelRecord]) -> FloatArray:
+    """Return the convex hull (n, 2) of where all pixels look, counter-clockwise [m, local].
+
+    Raises
+    ------
+    ProductError
+        If fewer than three pixels look at a seabed.
+    """
+    from scipy.spatial import ConvexHull
+
+    places, _ = _pixels(records)
+    if places.shape[0] < 3:
+        raise ProductError("coverage: fewer than three pixels look at the seabed. Check the flight")
+    return np.asarray(places[ConvexHull(places).vertices])
+
+
+def coverage_map(
+    records: Sequence[PixelRecord],
+    map_frame: MapFrame,
+    *,
+    survey_area: FloatArray,
+    cell_size: float,
+    reach: float,
+) -> CoverageMap:
+    """Sort the cells of the survey area by what the pixels near their centres found.
+
+    A cell is covered when a pixel within ``reach`` of its centre found the bottom or saw land.
+    Otherwise its state is the commonest outcome of these pixels; with no such pixel it is a gap.
+
+    Parameters
+    ----------
+    records : sequence of PixelRecord
+        One a frame.
+    map_frame : MapFrame
+        Where the local frame lies on the map.
+    survey_area : array (n, 2)
+        Ring around the area that should be covered [m, local], say `surveyed_hull`.
+    cell_size : float
+        Side of a cell [m].
+    reach : float
+        Half the diagonal of a pixel on the bottom [m]: what one pixel answers for.
+    """
+    from scipy.spatial import cKDTree
+
+    ring = survey_area + map_frame.origin[:2]
+    cells = CellGrid.covering(ring, cell_size=cell_size)
+    inside = inside_ring(cells, ring)
+    centres = cells.centres()[inside] - map_frame.origin[:2]
+    places, outcomes = _pixels(records)
+    trees = {
+        outcome: cKDTree(places[outcomes == outcome])
+        for outcome in Outcome
+        if (outcomes == outcome).any()
+    }
+    state = np.full(cells.shape, OUTSIDE_AREA, dtype=np.int16)
+    state[inside] = _states(centres, trees, reach)
+    return CoverageMap(cells=cells, state=state)
+
+
+def _states(
+    centres: FloatArray, trees: Mapping[Outcome, cKDTree], reach: float
+) -> NDArray[np.int16]:
+    state = np.full(centres.shape[0], GAP, dtype=np.int16)
+    most = np.zeros(centres.shape[0], dtype=np.intp)
+    for outcome, tree in trees.items():
+        near = np.asarray(tree.query_ball_point(centres, reach, return_length=True))
+        rank = np.where(near > 0, near + (outcome in SEEN) * SEEN_RANK, 0)
+        state[rank > most] = outcome
+        most = np.maximum(most, rank)
+    return state
+
+
+def write_coverage_geojson(
+    path: Path,
+    coverage: CoverageMap,
+    map_frame: MapFrame,
+    *,
+    min_hole_area: float = MIN_HOLE_AREA,
+) -> None:
+    """Write covered ground, and holes with their cause, as GeoJSON (RFC 7946: WGS 84).
+
+    Features have ``kind`` ("covered" or "hole"), ``area_m2`` (on the map) and, for holes,
+    ``cause``: "gap between frames" or the name of the commonest `Outcome` there.
+
+    Parameters
+    ----------
+    path : Path
+        File to write.
+    coverage : CoverageMap
+        Cells and what was seen in them.
+    map_frame : MapFrame
+        For the CRS.
+    min_hole_area : float
+        Holes smaller than this are left out [m2].
+    """
+    features = [*_covered(coverage, map_frame), *_holes(coverage, map_frame, min_hole_area)]
+    write_whole(path, json_bytes({"type": "FeatureCollection", "features": features}))
+
+
+def _covered(coverage: CoverageMap, map_frame: MapFrame) -> list[dict[str, Any]]:
+    covered = coverage.covered
+    return [
+        _feature(rings, map_frame, {"kind": "covered"})
+        for rings, _ in _polygons(covered.astype(np.int16), covered, coverage.cells)
+    ]
+
+
+def _holes(coverage: CoverageMap, map_frame: MapFrame, min_area: float) -> list[dict[str, Any]]:
+    missing = ~coverage.covered & (coverage.state != OUTSIDE_AREA)
+    return [
+        _feature(rings, map_frame, {"kind": "hole", "cause": coverage.cause(state)})
+        for rings, state in _polygons(coverage.state, missing, coverage.cells)
+        if _area(rings) > min_area
+    ]
+
+
+def _polygons(
+    values: NDArray[np.int16], mask: NDArray[np.bool_], cells: CellGrid
+) -> list[tuple[list[FloatArray], int]]:
+    from rasterio.features import shapes
+
+    found = shapes(values, mask=mask, connectivity=4, transform=cells.transform)
+    return [
+        ([np.array(ring) for ring in shape["coordinates"]], int(value)) for shape, value in found
+    ]
+
+
+def _feature(
+    rings: list[FloatArray], map_frame: MapFrame, properties: dict[str, str]
+) -> dict[str, Any]:
+    from pyproj import Transformer
+
+    to_wgs84 = Transformer.from_crs(map_frame.epsg, 4326, always_xy=True)
+    coordinates = []
+    for number, ring in enumerate(rings):
+        counter_clockwise = _signed_area(ring) > 0.0
+        right_handed = ring if counter_clockwise == (number == 0) else ring[::-1]
+        lon_lat = np.column_stack(to_wgs84.transform(right_handed[:, 0], right_handed[:, 1]))
+        coordinates.append(lon_lat.round(DEGREE_DECIMALS).tolist())
+    return {
+        "type": "Feature",
+        "properties": {**properties, "area_m2": round(_area(rings), 3)},
+        "geometry": {"type": "Polygon", "coordinates": coordinates},
+    }
+
+
+def _area(rings: list[FloatArray]) -> float:
+    outer, *inner = (abs(_signed_area(ring)) for ring in rings)
+    return outer - sum(inner)
+
+
+def _signed_area(ring: FloatArray) -> float:
+    x, y = (ring - ring[0]).T
+    return float(0.5 * np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))
+
+
+def _pixels(records: Sequence[PixelRecord]) -> tuple[FloatArray, NDArray[np.uint8]]:
+    """Return the places (n, 2) and outcomes (n,) of the pixels that look at a known seabed."""
+    places = np.concatenate([record.true_position[..., :2].reshape(-1, 2) for record in records])
+    outcomes = np.concatenate([record.outcome.ravel() for record in records])
+    known = np.isfinite(places).all(axis=1)
+    return places[known], outcomes[known]

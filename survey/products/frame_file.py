@@ -1,0 +1,74 @@
+"""One immutable file a frame: its points and what became of every pixel."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from survey.cloud.points import PixelRecord, PointCloud
+from survey.products.writing import write_whole
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrameResult:
+    """What one flash gave.
+
+    Parameters
+    ----------
+    bottom, surface : PointCloud
+        Points of the frame.
+    record : PixelRecord
+        Truth and outcome of every pixel.
+    """
+
+    bottom: PointCloud
+    surface: PointCloud
+    record: PixelRecord
+
+
+def frame_bytes(result: FrameResult) -> bytes:
+    """Return the content of a frame's file: a zip of arrays, the same bytes for the same frame."""
+    arrays: dict[str, Any] = {}
+    for part, columns in (("bottom", result.bottom), ("surface", result.surface)):
+        arrays |= {f"{part}_{name}": column for name, column in columns.columns().items()}
+    for field in fields(PixelRecord):
+        arrays[f"pixel_{field.name}"] = getattr(result.record, field.name)
+    content = io.BytesIO()
+    np.savez_compressed(content, **arrays)
+    return content.getvalue()
+
+
+def write_frame(path: Path, result: FrameResult) -> bytes:
+    """Write a frame whole, and return its bytes."""
+    content = frame_bytes(result)
+    write_whole(path, content)
+    return content
+
+
+def read_frame(path: Path) -> FrameResult:
+    """Read a frame that `write_frame` wrote.
+
+    Raises
+    ------
+    ValueError
+        When the file is not whole.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as arrays:
+            return FrameResult(
+                bottom=PointCloud(**_part(arrays, "bottom")),
+                surface=PointCloud(**_part(arrays, "surface")),
+                record=PixelRecord(**_part(arrays, "pixel")),
+            )
+    except (zipfile.BadZipFile, EOFError, KeyError, TypeError) as fault:
+        raise ValueError(f"{path}: not a whole frame ({fault}). Delete it and run again") from None
+
+
+def _part(arrays: Any, prefix: str) -> dict[str, Any]:
+    start = len(prefix) + 1
+    return {name[start:]: arrays[name] for name in arrays.files if name.startswith(f"{prefix}_")}

@@ -1,0 +1,194 @@
+"""Point clouds as LAS 1.4 files, point format 6, compressed as LAZ."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from survey.cloud.points import PointClass, PointCloud
+from survey.flight.pose import Frame
+from survey.products.gps_time import adjusted_gps_time
+from survey.products.ply_file import require_points
+from survey.products.writing import require_read_back, whole_file
+from terrain.map_frame import MapFrame
+
+if TYPE_CHECKING:
+    import laspy
+
+COORDINATE_STEP = 0.001
+SCAN_ANGLE_STEP_DEG = 0.006
+MAX_INTENSITY = 65535
+EXTRA_STEPS_PER_METRE = 1024
+"""Extra coordinates are kept to 1/1024 m: their low bits are zero, which compresses well."""
+
+EXTRA_BYTES: tuple[tuple[str, type[np.generic], str], ...] = (
+    ("frame", np.uint32, "flash number from 0"),
+    ("pixel_row", np.uint16, "camera row from 0"),
+    ("pixel_column", np.uint16, "camera column from 0"),
+    ("depth_m", np.float32, "depth, positive down, m"),
+    ("snr", np.float32, "echo over noise deviation"),
+    ("counts", np.float32, "photo-electrons of the echo"),
+    *((f"uncorrected_{axis}", np.float64, "without refraction, m") for axis in "xyz"),
+    *((f"true_{axis}", np.float64, "true place of the pixel, m") for axis in "xyz"),
+    ("true_elevation", np.float64, "true z at measured x, y, m"),
+    ("true_class", np.uint8, "class of what is truly there"),
+)
+RETURNS = {
+    PointClass.WATER_SURFACE: (1, 2),
+    PointClass.BATHYMETRIC: (2, 2),
+    PointClass.SUBMERGED_OBJECT: (2, 2),
+}
+"""Return number and number of returns in water; (1, 1) for the other classes."""
+
+
+def write_laz(
+    path: Path,
+    cloud: PointCloud,
+    map_frame: MapFrame,
+    *,
+    start_utc: datetime,
+    frames: Sequence[Frame],
+) -> None:
+    """Write a cloud as LAZ (or LAS, by the suffix), every point flagged synthetic.
+
+    Coordinates have steps of 1 mm. GPS time is adjusted standard. Intensity is the echo's
+    photo-electrons, one a step, rounded and clipped to 65535; the extra bytes ``counts`` have
+    them unclipped. The scan angle lies across the track, positive to the right. The point
+    source is the survey line plus one. Surface is return 1 of 2, bottom 2 of 2, all else 1 of 1.
+
+    Parameters
+    ----------
+    path : Path
+        File to write, ending in ``.laz`` or ``.las``.
+    cloud : PointCloud
+        Points in the scene's local frame.
+    map_frame : MapFrame
+        Where that frame lies on the map, with its compound CRS, written as OGC WKT.
+    start_utc : datetime
+        Start of the mission; the file's creation date as well.
+    frames : sequence of Frame
+        Flashes that the cloud's points name, for the scan angle.
+
+    Raises
+    ------
+    ProductError
+        If the cloud is empty or a position is not finite.
+    ReadBackError
+        If the file does not read back as written.
+    """
+    import laspy
+
+    require_points(path, cloud)
+    las = laspy.LasData(_header(map_frame, start_utc))
+    on_map = map_frame.to_map(cloud.position)
+    las.x, las.y, las.z = on_map[:, 0], on_map[:, 1], on_map[:, 2]
+    _fill_standard_fields(las, cloud, frames)
+    las.gps_time = adjusted_gps_time(start_utc, cloud.time)
+    for name, values in _extra_columns(cloud, map_frame).items():
+        las[name] = values
+    with whole_file(path) as partial:
+        las.write(str(partial))
+        again = laspy.read(str(partial))
+        same = again.points.array.tobytes() == las.points.array.tobytes()
+        require_read_back(path, "points", same)
+
+
+def read_laz(path: Path, map_frame: MapFrame, *, start_utc: datetime) -> PointCloud:
+    """Read a cloud that `write_laz` wrote, in the local frame of ``map_frame``."""
+    import laspy
+
+    las = laspy.read(str(path))
+
+    def place(prefix: str) -> NDArray[np.float64]:
+        on_map = np.stack([np.asarray(las[f"{prefix}{axis}"]) for axis in "xyz"], axis=1)
+        return map_frame.to_local(on_map)
+
+    return PointCloud(
+        position=map_frame.to_local(np.asarray(las.xyz)),
+        uncorrected=place("uncorrected_"),
+        truth=place("true_"),
+        classification=np.array(las.classification, dtype=np.uint8),
+        true_classification=np.array(las.true_class),
+        true_elevation=np.array(las.true_elevation),
+        time=np.asarray(las.gps_time) - adjusted_gps_time(start_utc, np.zeros(1)),
+        depth=np.array(las.depth_m, dtype=np.float64),
+        counts=np.array(las.counts),
+        snr=np.array(las.snr),
+        frame=np.array(las.frame),
+        line=np.asarray(las.point_source_id) - np.uint16(1),
+        row=np.array(las.pixel_row),
+        column=np.array(las.pixel_column),
+    )
+
+
+def _header(map_frame: MapFrame, start_utc: datetime) -> laspy.LasHeader:
+    import laspy
+    from laspy.header import GpsTimeType
+    from laspy.vlrs.known import WktCoordinateSystemVlr
+
+    header = laspy.LasHeader(version="1.4", point_format=6)
+    header.scales = np.full(3, COORDINATE_STEP)
+    header.offsets = np.floor(map_frame.origin)
+    header.creation_date = start_utc.astimezone(UTC).date()
+    header.system_identifier = "bathyflash simulation"
+    header.generating_software = "bathyflash"
+    header.global_encoding.gps_time_type = GpsTimeType.STANDARD
+    header.global_encoding.wkt = True
+    header.vlrs.append(WktCoordinateSystemVlr(map_frame.crs.to_wkt("WKT1_GDAL")))
+    header.add_extra_dims([laspy.ExtraBytesParams(*columns) for columns in EXTRA_BYTES])
+    return header
+
+
+def _fill_standard_fields(las: Any, cloud: PointCloud, frames: Sequence[Frame]) -> None:
+    las.synthetic = np.ones(len(cloud), dtype=np.uint8)
+    las.classification = cloud.classification
+    las.intensity = np.clip(np.rint(cloud.counts), 0, MAX_INTENSITY).astype(np.uint16)
+    las.point_source_id = cloud.line + np.uint16(1)
+    las.scan_angle = np.rint(scan_angle_deg(cloud, frames) / SCAN_ANGLE_STEP_DEG).astype(np.int16)
+    numbers, totals = np.ones((2, len(cloud)), dtype=np.uint8)
+    for point_class, (number, total) in RETURNS.items():
+        numbers[cloud.classification == point_class] = number
+        totals[cloud.classification == point_class] = total
+    las.return_number, las.number_of_returns = numbers, totals
+
+
+def scan_angle_deg(cloud: PointCloud, frames: Sequence[Frame]) -> NDArray[np.float64]:
+    """Return the angle off nadir across the track, positive to the right (n,) [deg].
+
+    Taken to the uncorrected point, hence the direction in air, from the pose of its frame.
+    """
+    index = {frame.index: number for number, frame in enumerate(frames)}
+    of_point = np.array([index[number] for number in cloud.frame.tolist()], dtype=np.intp)
+    sensor = np.array([frame.pose.position for frame in frames])[of_point]
+    heading = np.array([frame.pose.heading for frame in frames])[of_point]
+    ray = cloud.uncorrected - sensor
+    right = ray[:, 0] * np.cos(heading) - ray[:, 1] * np.sin(heading)
+    return np.asarray(np.degrees(np.arctan2(right, -ray[:, 2])))
+
+
+def _extra_columns(cloud: PointCloud, map_frame: MapFrame) -> dict[str, NDArray[Any]]:
+    places = {"uncorrected": cloud.uncorrected, "true": cloud.truth}
+    columns: dict[str, NDArray[Any]] = {
+        f"{prefix}_{axis}": _compressible(map_frame.to_map(place)[:, index])
+        for prefix, place in places.items()
+        for index, axis in enumerate("xyz")
+    }
+    return columns | {
+        "frame": cloud.frame,
+        "pixel_row": cloud.row,
+        "pixel_column": cloud.column,
+        "depth_m": cloud.depth,
+        "snr": cloud.snr,
+        "counts": cloud.counts,
+        "true_elevation": _compressible(cloud.true_elevation),
+        "true_class": cloud.true_classification,
+    }
+
+
+def _compressible(metres: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(np.rint(metres * EXTRA_STEPS_PER_METRE) / EXTRA_STEPS_PER_METRE)

@@ -1,0 +1,119 @@
+"""Pictures of the report: depth, outcome and errors, as PNG bytes."""
+
+from __future__ import annotations
+
+from io import BytesIO
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from survey.cloud.points import Outcome
+from survey.products.cells import CellGrid
+from survey.products.coverage import GAP, OUTSIDE_AREA, CoverageMap
+from survey.products.depth_colours import COLOURS, LAND, depth_range
+from survey.products.grids import ElevationGrid
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+DOTS_PER_INCH = 110
+HISTOGRAM_BINS = 50
+STATE_LOOKS = {
+    Outcome.FOUND: ("bottom found", "#0072b2"),
+    Outcome.DRY: ("land", LAND),
+    Outcome.FALSE_BOTTOM: ("false bottom", "#d55e00"),
+    Outcome.TOO_WEAK: ("echo too weak", "#56b4e9"),
+    Outcome.MERGED_WITH_SURFACE: ("merged with surface", "#f0e442"),
+    Outcome.OUTSIDE_GATE: ("outside gate", "#cc79a7"),
+    Outcome.SATURATED: ("saturated", "#000000"),
+    Outcome.CHANCE: ("missed by chance", "#009e73"),
+    GAP: ("gap between frames", "#9a9a9a"),
+}
+"""Words and colours (Okabe and Ito 2008, told apart by the colour-blind)."""
+
+
+def depth_map(grid: ElevationGrid, *, water_level: float) -> bytes:
+    """Return a map of depth below the water level, land in sand colour."""
+    from matplotlib import colormaps
+
+    depth = water_level - grid.elevation
+    figure, axes = _map_axes(grid.cells)
+    shallow, deep = depth_range(depth[np.isfinite(depth)])
+    land = {"under": LAND} if shallow == 0.0 else {}
+    colours = colormaps[COLOURS].with_extremes(**land)
+    image = axes.imshow(
+        depth,
+        cmap=colours,
+        vmin=shallow,
+        vmax=deep,
+        extent=grid.cells.extent,
+        interpolation="nearest",
+    )
+    figure.colorbar(
+        image, ax=axes, label="depth below water level [m]", extend="min" if land else "neither"
+    )
+    return _png(figure)
+
+
+def outcome_map(coverage: CoverageMap) -> bytes:
+    """Return a map of what became of the bottom, each outcome that occurs with its share."""
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Patch
+
+    figure, axes = _map_axes(coverage.cells)
+    inside = coverage.state != OUTSIDE_AREA
+    handles = []
+    for state, (words, colour) in STATE_LOOKS.items():
+        here = coverage.state == state
+        if here.any():
+            share = 100.0 * here.sum() / inside.sum()
+            handles.append(Patch(color=colour, label=f"{words} ({share:.1f} %)"))
+            axes.imshow(
+                np.ma.masked_array(np.ones(here.shape), ~here),
+                cmap=ListedColormap([colour]),
+                extent=coverage.cells.extent,
+                interpolation="nearest",
+            )
+    figure.legend(handles=handles, loc="outside upper center", ncols=3, frameon=False)
+    return _png(figure)
+
+
+def error_histogram(errors: NDArray[np.float64]) -> bytes:
+    """Return a histogram of elevation errors (n,) [m]; the end bins hold all that is beyond."""
+    figure, axes = _figure(height=3.2)
+    limit = np.ceil(20.0 * np.percentile(np.abs(errors), 95.0) + 1e-9) / 10.0
+    edges = np.linspace(-limit, limit, HISTOGRAM_BINS + 1)
+    axes.hist(np.clip(errors, -limit, limit), bins=edges.tolist(), color="#0072b2")
+    axes.axvline(0.0, color="#303030", linewidth=0.8)
+    axes.set_xlim(-limit, limit)
+    axes.set_xlabel("measured less true elevation [m]")
+    axes.set_ylabel(f"bottom points per {200.0 * limit / HISTOGRAM_BINS:.2g} cm")
+    axes.spines[["top", "right"]].set_visible(False)
+    return _png(figure)
+
+
+def _map_axes(cells: CellGrid) -> tuple[Figure, Axes]:
+    west, east, south, north = cells.extent
+    figure, axes = _figure(height=float(np.clip(7.0 * (north - south) / (east - west), 2.6, 7.5)))
+    axes.set_xlabel("easting [m]")
+    axes.set_ylabel("northing [m]")
+    axes.set_aspect("equal")
+    axes.ticklabel_format(useOffset=False, style="plain")
+    axes.locator_params(axis="x", nbins=5)
+    axes.set_facecolor("#f4f4f4")
+    return figure, axes
+
+
+def _figure(*, height: float) -> tuple[Figure, Axes]:
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9.0, height), dpi=DOTS_PER_INCH, layout="constrained")
+    return figure, figure.add_subplot()
+
+
+def _png(figure: Figure) -> bytes:
+    buffer = BytesIO()
+    figure.savefig(buffer, format="png", metadata={"Software": None})
+    return buffer.getvalue()

@@ -1,0 +1,141 @@
+"""All finished products of a mission, from its frames."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from survey.cloud.points import PointClass, PointCloud
+from survey.cloud.stitch import stitched
+from survey.flight.pose import Frame
+from survey.products.accuracy import BOTTOM_CLASSES, elevation_errors, metrics
+from survey.products.coverage import coverage_map, surveyed_hull, write_coverage_geojson
+from survey.products.frame_file import FrameResult
+from survey.products.grids import grid_elevation, write_bathymetry_tif
+from survey.products.json_file import write_json
+from survey.products.las_file import write_laz
+from survey.products.mesh_files import write_bathymetry_glb
+from survey.products.pixels import explain_empty
+from survey.products.ply_file import write_ply
+from survey.products.report import write_report
+from survey.products.trajectory_file import write_trajectory_csv
+from survey.products.writing import ProductError
+from terrain.seabed import Seabed
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProductSettings:
+    """What the products need to know beside the frames.
+
+    Parameters
+    ----------
+    title, description : str
+        Of the mission.
+    start_utc : datetime
+        Start of the mission.
+    water_level : float
+        In the vertical datum [m].
+    thinning, grid : float
+        Sides of the cells in which overlaps are thinned and elevations gridded [m].
+    pixel_spacing : float
+        Distance of neighbouring pixels on the bottom [m].
+    """
+
+    title: str
+    description: str
+    start_utc: datetime
+    water_level: float
+    thinning: float
+    grid: float
+    pixel_spacing: float
+
+
+def write_products(
+    folder: Path,
+    *,
+    results: Sequence[FrameResult],
+    frames: Sequence[Frame],
+    seabed: Seabed,
+    settings: ProductSettings,
+) -> dict[str, Any]:
+    """Stitch the frames, write every product into the run folder, and return the metrics.
+
+    Raises
+    ------
+    ProductError
+        When there is no bottom and no land at all; the text says why.
+    """
+    records = [result.record for result in results]
+    bottom = stitched([result.bottom for result in results], cell_size=settings.thinning)
+    surface = stitched([result.surface for result in results], cell_size=settings.thinning)
+    _require_bottom(bottom, results)
+    _write_clouds(folder, bottom, surface, frames, seabed, settings)
+    grid = grid_elevation(bottom, seabed.map_frame, cell_size=settings.grid)
+    write_bathymetry_tif(folder / "bathymetry.tif", grid, seabed.map_frame)
+    write_bathymetry_glb(
+        folder / "bathymetry.glb", grid, seabed.map_frame, water_level=settings.water_level
+    )
+    area = surveyed_hull(records)
+    cell = max(settings.grid, settings.pixel_spacing)
+    coverage = coverage_map(
+        records,
+        seabed.map_frame,
+        survey_area=area,
+        cell_size=settings.grid,
+        reach=settings.pixel_spacing * 2**0.5,
+    )
+    write_coverage_geojson(folder / "coverage.geojson", coverage, seabed.map_frame)
+    found = metrics(
+        bottom=bottom,
+        surface=surface,
+        records=records,
+        elevation_at=seabed.elevation_at,
+        water_level=settings.water_level,
+        survey_area=area,
+        cell_size=cell,
+    )
+    write_json(folder / "metrics.json", found)
+    write_report(
+        folder / "report.html",
+        title=settings.title,
+        description=settings.description,
+        metrics=found,
+        grid=grid,
+        coverage=coverage,
+        errors=elevation_errors(bottom.select(np.isin(bottom.classification, BOTTOM_CLASSES))),
+        water_level=settings.water_level,
+    )
+    return found
+
+
+def _require_bottom(bottom: PointCloud, results: Sequence[FrameResult]) -> None:
+    if np.isin(bottom.classification, (*BOTTOM_CLASSES, PointClass.GROUND)).any():
+        return
+    raise ProductError(explain_empty([result.record for result in results]))
+
+
+def _write_clouds(
+    folder: Path,
+    bottom: PointCloud,
+    surface: PointCloud,
+    frames: Sequence[Frame],
+    seabed: Seabed,
+    settings: ProductSettings,
+) -> None:
+    for name, cloud in (("bottom", bottom), ("water_surface", surface)):
+        write_ply(folder / f"{name}.ply", cloud, seabed.map_frame)
+        write_laz(
+            folder / f"{name}.laz",
+            cloud,
+            seabed.map_frame,
+            start_utc=settings.start_utc,
+            frames=frames,
+        )
+    write_trajectory_csv(
+        folder / "trajectory.csv", frames, [frame.pose for frame in frames], seabed.map_frame
+    )

@@ -1,0 +1,157 @@
+"""Whole files, JSON, trajectory, GPS time and the report."""
+
+from __future__ import annotations
+
+import json
+from datetime import UTC, datetime
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from survey.flight.pose import Pose
+from survey.products.accuracy import elevation_errors, metrics
+from survey.products.coverage import coverage_map, surveyed_hull
+from survey.products.gps_time import adjusted_gps_time
+from survey.products.grids import grid_elevation
+from survey.products.json_file import write_json
+from survey.products.report import write_report
+from survey.products.trajectory_file import read_trajectory_csv, write_trajectory_csv
+from survey.products.writing import ProductError, whole_file
+
+
+def write_half_then_fail(path: Path, fault: BaseException) -> None:
+    """Write some bytes and raise before the file is whole."""
+    with whole_file(path) as partial:
+        partial.write_bytes(b"half")
+        raise fault
+
+
+def test_a_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
+    path = tmp_path / "product.txt"
+    path.write_bytes(b"old")
+    with pytest.raises(OSError, match="disk full"):
+        write_half_then_fail(path, OSError("disk full"))
+    assert [(file.name, file.read_bytes()) for file in tmp_path.iterdir()] == [
+        ("product.txt", b"old")
+    ]
+
+
+def test_an_interrupted_write_leaves_nothing(tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        write_half_then_fail(tmp_path / "product.txt", KeyboardInterrupt())
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_json_refuses_nan_and_keeps_nothing(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        write_json(tmp_path / "metrics.json", {"bias_m": float("nan")})
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_json_keeps_the_order(tmp_path: Path) -> None:
+    write_json(tmp_path / "metrics.json", {"b": 1, "a": None})
+    assert list(json.loads((tmp_path / "metrics.json").read_text())) == ["b", "a"]
+
+
+@pytest.mark.parametrize(
+    ("utc", "leap_seconds"),
+    [((2026, 6, 21), 18), ((2017, 1, 1), 18), ((2016, 12, 31), 17), ((1980, 1, 6), 0)],
+)
+def test_gps_time_counts_leap_seconds(utc: tuple[int, int, int], leap_seconds: int) -> None:
+    start = datetime(*utc, tzinfo=UTC)
+    days = (start - datetime(1980, 1, 6, tzinfo=UTC)).days
+    time = adjusted_gps_time(start, np.array([0.5]))
+    assert time[0] + 1e9 == days * 86400 + leap_seconds + 0.5
+
+
+def test_gps_time_needs_a_time_zone() -> None:
+    with pytest.raises(ValueError, match="no time zone"):
+        adjusted_gps_time(datetime(2026, 6, 21), np.zeros(1))
+
+
+def test_trajectory_round_trip(small_survey: Any, tmp_path: Path) -> None:
+    frames = small_survey.frames
+    measured = [
+        Pose(
+            position=frame.pose.position + np.array([0.02, -0.03, 0.05]),
+            roll=np.radians(1.0),
+            pitch=np.radians(-2.0),
+            heading=frame.pose.heading,
+        )
+        for frame in frames
+    ]
+    path = tmp_path / "trajectory.csv"
+    write_trajectory_csv(path, frames, measured, small_survey.map_frame)
+    table = read_trajectory_csv(path)
+    assert table["frame"].tolist() == list(range(32))
+    assert table["line"].tolist() == [frame.line for frame in frames]
+    on_map = small_survey.map_frame.to_map(np.array([frame.pose.position for frame in frames]))
+    for index, name in enumerate(("easting_m", "northing_m", "up_m")):
+        np.testing.assert_allclose(table[f"true_{name}"], on_map[:, index], rtol=0.0, atol=6e-5)
+    np.testing.assert_allclose(table["measured_up_m"] - table["true_up_m"], 0.05, atol=2e-4)
+    np.testing.assert_allclose(table["measured_roll_deg"], 1.0)
+    np.testing.assert_allclose(table["measured_pitch_deg"], -2.0)
+    np.testing.assert_allclose(table["true_heading_deg"], 70.0)
+
+
+def test_trajectory_needs_one_measured_pose_a_frame(small_survey: Any, tmp_path: Path) -> None:
+    with pytest.raises(ProductError, match="32 frames and 0 measured poses"):
+        write_trajectory_csv(
+            tmp_path / "trajectory.csv", small_survey.frames, [], small_survey.map_frame
+        )
+
+
+class Links(HTMLParser):
+    """Collects what a page would load or link to, and its text."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.targets: list[str] = []
+        self.words = ""
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.targets += [value or "" for name, value in attrs if name in ("src", "href")]
+
+    def handle_data(self, data: str) -> None:
+        self.words += data
+
+
+def write_report_of(survey: Any, path: Path) -> str:
+    """Write the report of a survey and return the page."""
+    hull = surveyed_hull(survey.records)
+    write_report(
+        path,
+        title="Bar <b>",
+        description="Flown & stitched.",
+        metrics=metrics(
+            bottom=survey.bottom,
+            surface=survey.surface,
+            records=survey.records,
+            elevation_at=survey.elevation_at,
+            water_level=survey.water_level,
+            survey_area=hull,
+            cell_size=8.0,
+        ),
+        grid=grid_elevation(survey.bottom, survey.map_frame, cell_size=8.0),
+        coverage=coverage_map(
+            survey.records, survey.map_frame, survey_area=hull, cell_size=4.0, reach=4.6
+        ),
+        errors=elevation_errors(survey.bottom),
+        water_level=survey.water_level,
+    )
+    return path.read_text(encoding="utf-8")
+
+
+def test_report_is_self_contained_and_repeatable(small_survey: Any, tmp_path: Path) -> None:
+    page = write_report_of(small_survey, tmp_path / "a.html")
+    assert page == write_report_of(small_survey, tmp_path / "b.html")
+    parsed = Links()
+    parsed.feed(page)
+    assert len(parsed.targets) == 3
+    assert all(target.startswith("data:image/png;base64,") for target in parsed.targets)
+    assert "Bar <b>" in parsed.words
+    assert "Flown & stitched." in parsed.words
+    assert "too weak" in parsed.words

@@ -1,0 +1,103 @@
+"""The scenarios that come with the package are sound and show what they promise."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from survey.flight.trajectory import fly_lines, footprint
+from survey.scenario import Scenario, ScenarioError, components, load_scenario
+from survey.scenario.gallery import gallery
+
+ROOT = Path(__file__).parents[2]
+
+
+def outlines_on_map(scenario: Scenario) -> list[NDArray[np.float64]]:
+    """Return the footprints (4, 2) at the water surface, line by line."""
+    frame = components.map_frame(scenario)
+    camera, level = components.camera(scenario), scenario.surface.water_level_m
+    flashes = fly_lines(components.flight_plan(scenario))
+    return [footprint(camera, flash.pose, level) + frame.origin[:2] for flash in flashes]
+
+
+def sampled(scenario: Scenario, places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the raster's elevation at places of the map (n, 2) [m]; nan outside."""
+    import rasterio
+
+    with rasterio.open(scenario.folder / getattr(scenario.seabed, "file")) as raster:  # noqa: B009
+        return np.array([v[0] for v in raster.sample(places, masked=True)], dtype=float)
+
+
+@pytest.mark.parametrize("name", sorted(gallery()))
+def test_every_scenario_is_sound_and_says_what_to_expect(name: str) -> None:
+    scenario = load_scenario(name)
+    assert scenario.mission.title
+    assert scenario.mission.description
+    assert scenario.mission.expect
+    assert scenario.receiver.source == scenario.detector.source == "assumed"
+
+
+def test_the_gallery_is_complete() -> None:
+    names = {"measured-seabed", "sandbar", "wreck", "turned-footprint", "too-deep"}
+    assert names <= gallery().keys()
+
+
+def test_measured_seabed_is_flown_over_valid_cells_with_a_margin() -> None:
+    scenario = load_scenario("measured-seabed")
+    for outline in outlines_on_map(scenario):
+        centre = outline.mean(axis=0)
+        grown = centre + (outline - centre) * (1.0 + 20.0 / np.abs(outline - centre).max())
+        sides = zip(grown, np.roll(grown, -1, axis=0), strict=True)
+        rim = np.concatenate([np.linspace(a, b, 20) for a, b in sides])
+        assert (sampled(scenario, rim) > -100.0).all()
+
+
+def test_measured_seabed_runs_from_the_beach_to_9_m() -> None:
+    scenario = load_scenario("measured-seabed")
+    plan = components.flight_plan(scenario)
+    assert plan.lines >= 4
+    assert plan.frame_count >= 32
+    outlines = np.array(outlines_on_map(scenario)).reshape(plan.lines, plan.frames_per_line, 4, 2)
+    for number, line in enumerate(outlines):
+        outward = line if number % 2 == 0 else line[::-1]
+        depths = -sampled(scenario, outward.reshape(-1, 2)).reshape(-1, 4)
+        assert depths[0].min() < -2.0
+        assert depths[0].max() > 0.0
+        assert depths[-1].max() == pytest.approx(9.0, abs=0.3)
+
+
+def test_measured_seabed_gate_holds_land_and_depth() -> None:
+    scenario = load_scenario("measured-seabed")
+    receiver, plan = components.receiver(scenario), components.flight_plan(scenario)
+    c = 299_792_458.0
+    assert receiver.gate_start < 2.0 * (plan.height - 7.0) / c - 10e-9
+    gate_end = receiver.gate_start + receiver.bins * receiver.bin_width
+    corner = 2.0 * plan.height * np.hypot(1.0, np.hypot(0.256, 0.128)) / c
+    assert gate_end > corner + 2.0 * 10.0 * 1.36 / c * 1.03 + 30e-9
+
+
+def test_turned_footprint_leaves_gaps_of_49_m() -> None:
+    first, second = outlines_on_map(load_scenario("turned-footprint"))[:2]
+    assert second[:, 0].min() - first[:, 0].max() == pytest.approx(48.8)
+
+
+def test_wreck_lies_under_the_flight() -> None:
+    scenario = load_scenario("wreck")
+    wreck = scenario.seabed.objects[0]
+    place = np.array([wreck.easting_m, wreck.northing_m])
+    seen = np.array(outlines_on_map(scenario)).reshape(-1, 2)
+    assert (seen.min(axis=0) < place - 20.0).all()
+    assert (seen.max(axis=0) > place + 20.0).all()
+
+
+def test_the_readme_s_scenario_only_lacks_its_raster(tmp_path: Path) -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    file = tmp_path / "reef.toml"
+    file.write_text(readme.split("```toml\n")[1].split("```")[0], encoding="utf-8")
+    with pytest.raises(ScenarioError) as caught:
+        load_scenario(file)
+    assert [fault.place for fault in caught.value.faults] == ["seabed.file"]
+    assert caught.value.only_missing_files
