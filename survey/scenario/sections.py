@@ -128,9 +128,9 @@ class Transport(Section):
 
     forward_walks_per_m2: Positive = 16.0
     backward_walks_per_pixel: Count = 64
-    replicates: Annotated[int, Field(ge=2)] = 8
+    replicates: Annotated[int, Field(ge=3)] = 8
     split_angle_deg: Annotated[float, Field(gt=0.0, lt=90.0)] = 30.0
-    patch_size_m: Positive = 1.0
+    patch_size_m: Positive = 2.0
     layer_thickness_m: Positive = 0.5
     cell_size_m: Positive = 2.0
 

@@ -21,7 +21,7 @@ from survey.sensor.camera import Camera
 from survey.sensor.laser import Laser
 from survey.sensor.receiver import Receiver
 from survey.transport.glint import add_glint, add_mirror
-from survey.transport.join import join_in_column, join_on_patches
+from survey.transport.join import FORWARD, join_in_column, join_on_patches
 from survey.transport.launch import Address, Optics, launch_backward, launch_forward
 from survey.transport.random import SURFACE, chance
 from survey.transport.records import LEDGER_NAMES, Records, empty_records, overflowed, trimmed
@@ -34,7 +34,14 @@ from survey.transport.scene import (
     restricted_medium,
 )
 from survey.transport.settings import TransportSettings
-from survey.transport.waveforms import Replicates, Waveforms, blurred, padded_bins, pulse_taps
+from survey.transport.waveforms import (
+    Replicates,
+    Waveforms,
+    blurred,
+    crossed_variance,
+    padded_bins,
+    pulse_taps,
+)
 from terrain.patches import patch_table
 from terrain.sea_surface import SeaSurface
 
@@ -188,7 +195,7 @@ class Engine:
         self, scene: Scene, forward: Records, backward: Records, address: Address
     ) -> NDArray[np.float32]:
         pixels = self.camera.rows * self.camera.columns
-        echoes = np.zeros((2, self.settings.replicates, 2, pixels, self._bins.number), np.float32)
+        echoes = np.zeros((3, self.settings.replicates, 2, pixels, self._bins.number), np.float32)
         isolated = self.settings.illumination == "isolated"
         order = np.argsort(forward.patch, kind="stable")
         patches = forward.patch[order]
@@ -201,25 +208,18 @@ class Engine:
             layers.planes * layers.across * layers.along,
             self._cosines, np.cos(self.settings.split_angle),
             self.water.scattering * layers.thickness / layers.cell**2,
-            self.settings.column_pairs, isolated, *address,
+            isolated, *address,
         )  # fmt: skip
         return echoes
 
     def _estimate(self, echoes: NDArray[np.float32]) -> tuple[FloatArray, FloatArray]:
-        """Return mean and squared standard error (2, pixels, bins), the pulse's width included.
-
-        Forward and backward walks are independent, so their variances add: each is that of the
-        mean over its batches. What varies by the pairing alone is counted in both (departure from
-        an unbiased variance, to the safe side).
-        """
+        """Return mean and squared standard error (2, pixels, bins), the pulse's width included."""
         shape = (2, echoes.shape[3], self.receiver.bins)
-        sides = []
-        for side in echoes:
-            replicates = Replicates(shape=shape)
-            for batch in side:
-                replicates.add(np.stack([blurred(origin, self._taps) for origin in batch]))
-            sides.append(replicates)
-        return sides[0].mean, sides[0].variance_of_mean + sides[1].variance_of_mean
+        sides = [Replicates(shape=shape) for _ in echoes]
+        for side, batches in zip(sides, echoes, strict=True):
+            for batch in batches:
+                side.add(np.stack([blurred(origin, self._taps) for origin in batch]))
+        return sides[FORWARD].mean, crossed_variance(*sides)
 
     def _surface_echo(self, scene: Scene, optics: Optics) -> FloatArray:
         histogram = np.zeros((optics.rows * optics.columns, self._bins.number))
@@ -242,9 +242,8 @@ class Engine:
 
     def _bounds(self, pose: Pose) -> Bounds:
         """Return the lit rectangle with a margin that holds the light spread sideways."""
-        depth = self._deepest()
         outline = footprint(self.camera, pose, self.surface.level)
-        margin = 10.0 + 0.75 * depth + self.receiver.aperture_radius
+        margin = self._deepest() + self.receiver.aperture_radius
         west, south = outline.min(axis=0) - margin
         east, north = outline.max(axis=0) + margin
         return Bounds(west, east, south, north, self.receiver.gate_end)

@@ -1,8 +1,8 @@
 """Joining forward and backward walks at the last turn of the light's path.
 
-Every forward batch is paired with every backward batch. ``echoes`` (2, batches, 2, pixels, bins)
-holds, for each forward batch, its mean over the backward ones, and the other way round; then
-column and bottom.
+Every forward batch is paired with every backward batch. ``echoes`` (3, batches, 2, pixels, bins)
+holds, for each forward batch, its mean over the backward ones; the same the other way round; and
+forward batches with the backward batch of the same number alone. Then column and bottom.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from survey.transport.records import Records
 from terrain.kernels import kernel
 
 COLUMN, BOTTOM = 0, 1
-FORWARD, BACKWARD = 0, 1
+FORWARD, BACKWARD, MATCHED = 0, 1, 2
 
 
 class TimeBins(NamedTuple):
@@ -53,9 +53,12 @@ def deposit_pair(
     time: float,
     photons: float,
 ) -> None:
-    """Add one pair to the estimate of its forward batch and to that of its backward batch."""
-    deposit(echoes[FORWARD, forward_batch, origin], pixel, bins, time, photons)
-    deposit(echoes[BACKWARD, backward_batch, origin], pixel, bins, time, photons)
+    """Add one pair to the estimates of its forward and of its backward batch."""
+    batches = echoes.shape[1]
+    deposit(echoes[FORWARD, forward_batch, origin], pixel, bins, time, photons / batches)
+    deposit(echoes[BACKWARD, backward_batch, origin], pixel, bins, time, photons / batches)
+    if forward_batch == backward_batch:
+        deposit(echoes[MATCHED, forward_batch, origin], pixel, bins, time, photons)
 
 
 @kernel
@@ -73,10 +76,9 @@ def join_on_patches(
 
     ``order[first[b]:last[b]]`` are the forward arrivals on the patch of backward arrival b.
     """
-    share = 1.0 / echoes.shape[1]
     for b in range(backward.patch.shape[0]):
         pixel = backward.patch_owner[b]
-        importance = backward.patch_weight[b] * backward.patch_gain[b] * share
+        importance = backward.patch_weight[b] * backward.patch_gain[b]
         for k in range(first[b], last[b]):
             f = order[k]
             if isolated and forward.patch_owner[f] != pixel:
@@ -89,21 +91,41 @@ def join_on_patches(
 
 
 @kernel
-def sorted_by_cell(
-    cell: NDArray[np.int64], cells: int
+def sorted_by_key(
+    cell: NDArray[np.int64], batch: NDArray[np.int32], cells: int, batches: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return where each cell's crossings start, and the crossings in the order of cells."""
-    start = np.zeros(cells + 1, np.int64)
-    for key in cell:
-        start[key + 1] += 1
-    for key in range(cells):
+    """Return where each cell's and batch's crossings start, and the crossings in that order."""
+    start = np.zeros(cells * batches + 1, np.int64)
+    for i in range(cell.shape[0]):
+        start[cell[i] * batches + batch[i] + 1] += 1
+    for key in range(cells * batches):
         start[key + 1] += start[key]
     order = np.empty(cell.shape[0], np.int64)
     filled = start[:-1].copy()
     for i in range(cell.shape[0]):
-        order[filled[cell[i]]] = i
-        filled[cell[i]] += 1
+        key = cell[i] * batches + batch[i]
+        order[filled[key]] = i
+        filled[key] += 1
     return start, order
+
+
+@kernel
+def turn_density(
+    forward: Records,
+    f: int,
+    backward: Records,
+    b: int,
+    cosine_table: NDArray[np.float64],
+    split_cosine: float,
+) -> float:
+    """Phase function at the angle between two crossings [1/sr]; 0 within the split angle."""
+    to, fro = forward.cell_direction[f], backward.cell_direction[b]
+    cosine = -(to[0] * fro[0] + to[1] * fro[1] + to[2] * fro[2])
+    if cosine >= split_cosine:
+        return 0.0
+    place = max(0.0, 0.5 * (cosine + 1.0) * (cosine_table.shape[0] - 1))
+    i = min(int(place), cosine_table.shape[0] - 2)
+    return float(cosine_table[i] + (place - i) * (cosine_table[i + 1] - cosine_table[i]))
 
 
 @kernel
@@ -116,46 +138,36 @@ def join_in_column(
     cosine_table: NDArray[np.float64],
     split_cosine: float,
     factor: float,
-    pairs: int,
     isolated: bool,
     seed: int,
     frame: int,
 ) -> None:
     """Pair crossings of the same cell of a plane: a scattering by more than the split angle.
 
-    ``factor`` is scattering coefficient x layer thickness / cell area. Of a cell with many forward
-    crossings a stratified draw of ``pairs`` stands for all. Light that has touched the bottom
+    ``factor`` is scattering coefficient x layer thickness / cell area. Of each forward batch one
+    crossing of the cell is drawn and stands for all of them. Light that has touched the bottom
     before counts as bottom.
     """
-    share = 1.0 / echoes.shape[1]
-    start, order = sorted_by_cell(forward.cell, cells)
+    batches = echoes.shape[1]
+    start, order = sorted_by_key(forward.cell, forward.cell_batch, cells, batches)
     state = np.empty(2, np.uint64)
     start_stream(state, seed, COLUMN_PAIRS, frame, 0, 0)
-    entries = cosine_table.shape[0] - 1
     for b in range(backward.cell.shape[0]):
-        key = backward.cell[b]
-        present = start[key + 1] - start[key]
-        drawn = min(present, pairs)
         pixel = backward.cell_owner[b]
-        for k in range(drawn):
-            pick = k if drawn == present else int((k + uniform(state)) * present / drawn)
-            f = order[start[key] + pick]
+        for batch in range(batches):
+            key = backward.cell[b] * batches + batch
+            present = start[key + 1] - start[key]
+            if present == 0:
+                continue
+            f = order[start[key] + int(uniform(state) * present)]
             if isolated and forward.cell_owner[f] != pixel:
                 continue
-            cosine = -(
-                forward.cell_direction[f, 0] * backward.cell_direction[b, 0]
-                + forward.cell_direction[f, 1] * backward.cell_direction[b, 1]
-                + forward.cell_direction[f, 2] * backward.cell_direction[b, 2]
-            )
-            if cosine >= split_cosine:
+            density = turn_density(forward, f, backward, b, cosine_table, split_cosine)
+            if density == 0.0:
                 continue
-            place = max(0.0, 0.5 * (cosine + 1.0) * entries)
-            i = min(int(place), entries - 1)
-            density = cosine_table[i] + (place - i) * (cosine_table[i + 1] - cosine_table[i])
-            photons = factor * density * forward.cell_weight[f] * backward.cell_weight[b]
-            photons *= share * present / drawn
             deposit_pair(
                 echoes, BOTTOM if forward.cell_touched[f] else COLUMN, pixel, bins,
-                forward.cell_batch[f], backward.cell_batch[b],
-                forward.cell_time[f] + backward.cell_time[b], photons,
+                batch, backward.cell_batch[b],
+                forward.cell_time[f] + backward.cell_time[b],
+                factor * density * present * forward.cell_weight[f] * backward.cell_weight[b],
             )  # fmt: skip

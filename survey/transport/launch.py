@@ -106,13 +106,14 @@ def fly_down(
     if dz >= 0.0:
         ledger[REFLECTED] += weight
         return
+    east_slowness, north_slowness = dx / speed_of_light, dy / speed_of_light
     length = (scene.sea.level - z) / dz
     to_land, face = first_hit(scene.grid, x, y, z, dx, dy, dz, length)
     if face >= 0:
         arrive_at_bottom(
             scene, records, owner, batch, face,
-            x + dx * to_land, y + dy * to_land, z + dz * to_land,
-            dx, dy, dz, weight, to_land / speed_of_light, speed_of_light,
+            x + dx * to_land, y + dy * to_land, z + dz * to_land, dz,
+            weight, to_land / speed_of_light, speed_of_light, east_slowness, north_slowness,
         )  # fmt: skip
         ledger[REFLECTED] += weight
         return
@@ -129,7 +130,8 @@ def fly_down(
         return
     walk_in_water(
         scene, medium, records, state, owner, batch, x, y, scene.sea.level, dx, dy, dz,
-        weight, length / speed_of_light, first_path, in_column, bounces,
+        weight, length / speed_of_light, east_slowness, north_slowness, first_path, in_column,
+        bounces,
     )  # fmt: skip
 
 
@@ -189,6 +191,7 @@ def launch_backward(
     area = math.pi * optics.aperture_radius**2
     solid = 4.0 * optics.half_forward * optics.half_right / pixels
     gain = 1.0 / (medium.refractive_index * medium.refractive_index)
+    in_column_walks = (walks + column_stride - 1) // column_stride
     t = optics.turn
     for pixel in range(pixels):
         start_stream(state, address.seed, BACKWARD, address.frame, batch, pixel)
@@ -213,7 +216,7 @@ def launch_backward(
             radius = optics.aperture_radius * math.sqrt(uniform(state))
             angle = 2.0 * math.pi * uniform(state)
             ahead, aside = radius * math.cos(angle), radius * math.sin(angle)
-            column_share = float(column_stride) if i % column_stride == 0 else 0.0
+            column_share = walks / in_column_walks if i % column_stride == 0 else 0.0
             fly_down(
                 scene, medium, records, state, pixel, batch,
                 optics.position[0] + t[0, 0] * ahead + t[0, 1] * aside,

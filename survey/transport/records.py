@@ -125,8 +125,14 @@ def record_crossings(
     attenuation: float,
     time: float,
     speed: float,
+    east_slowness: float,
+    north_slowness: float,
 ) -> None:
-    """Note every plane that a straight path of ``length`` crosses, timed at its cell's centre."""
+    """Note every plane that a straight path of ``length`` crosses, timed at its cell's centre.
+
+    The whole walk is thought shifted sideways to the centre, as light that was launched beside
+    it: its time changes by the shift times the slowness [s/m] of the launch along it.
+    """
     if dz == 0.0:
         return
     first = (layers.top - z) / layers.thickness
@@ -147,7 +153,8 @@ def record_crossings(
                 records.cell[n] = (k * layers.along + j) * layers.across + i
                 records.cell_owner[n] = owner
                 records.cell_batch[n] = batch
-                records.cell_time[n] = time + (along + dx * to_x + dy * to_y) / speed
+                shifted = to_x * east_slowness + to_y * north_slowness
+                records.cell_time[n] = time + along / speed + shifted
                 records.cell_weight[n] = weight * np.exp(-attenuation * along) / abs(dz)
                 records.cell_direction[n, 0] = dx
                 records.cell_direction[n, 1] = dy

@@ -18,19 +18,18 @@ class TransportSettings:
     backward_walks_per_pixel : int
         Walks from each pixel, all replicates together.
     replicates : int
-        Independent repetitions whose scatter gives the standard error, at least 2.
+        Batches of each kind of walk, whose scatter gives the standard error, at least 3.
     split_angle : float
         A scattering by more than this is a turn, at which the two walks meet [rad].
     patch_size : float
-        Side of the bottom patches on which arrivals are paired [m].
+        Longest edge of the bottom patches on which arrivals are paired [m]; a patch is a triangle
+        of about half its square.
     layer_thickness : float
         Spacing of the planes on which the water column is paired [m].
     cell_size : float
         Side of the cells of such a plane [m].
     illumination : {"flood", "isolated"}
         Whether a pixel sees the light launched into every cone or into its own alone.
-    column_pairs : int
-        Forward crossings drawn for each backward crossing of the same cell.
     column_stride : int
         One backward walk in this many takes part in the water column.
     """
@@ -39,12 +38,11 @@ class TransportSettings:
     backward_walks_per_pixel: int = 64
     replicates: int = 8
     split_angle: float = radians(30.0)
-    patch_size: float = 1.0
+    patch_size: float = 2.0
     layer_thickness: float = 0.5
     cell_size: float = 2.0
     illumination: Literal["flood", "isolated"] = "flood"
-    column_pairs: int = 4
-    column_stride: int = 4
+    column_stride: int = 8
 
     @property
     def backward_walks_per_replicate(self) -> int:

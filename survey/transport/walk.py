@@ -41,16 +41,20 @@ def arrive_at_bottom(
     x: float,
     y: float,
     z: float,
-    dx: float,
-    dy: float,
     dz: float,
     weight: float,
     time: float,
     speed: float,
+    east_slowness: float,
+    north_slowness: float,
 ) -> None:
-    """Note an arrival on its patch, its time carried to the patch's centre."""
+    """Note an arrival on its patch, timed at the patch's centre.
+
+    The whole walk is thought shifted sideways, as light that was launched beside it, and then
+    lengthened or shortened to the centre's elevation.
+    """
     patch, area, cx, cy, cz = patch_at(scene.patches, face, x, y, z)
-    late = (dx * (cx - x) + dy * (cy - y) + dz * (cz - z)) / speed
+    late = (cx - x) * east_slowness + (cy - y) * north_slowness + dz * (cz - z) / speed
     record_arrival(
         records,
         patch,
@@ -96,6 +100,8 @@ def walk_in_water(
     dz: float,
     weight: float,
     time: float,
+    east_slowness: float,
+    north_slowness: float,
     first_path: float,
     in_column: float,
     bounces: bool,
@@ -103,7 +109,8 @@ def walk_in_water(
     """Follow one walk until it is absorbed, leaves, or is too late.
 
     It flies to the nearest of scattering, surface, bottom and time limit, then does what happens
-    there. ``first_path`` is the first optical path, ``in_column`` the factor with which crossings
+    there. The slownesses are those of the launch eastwards and northwards [s/m], ``first_path``
+    is the first optical path, ``in_column`` the factor with which crossings
     of the column's planes count (0: they do not), ``bounces`` whether it goes on from the bottom.
     """
     roulette_below = ROULETTE_BELOW * weight
@@ -121,7 +128,8 @@ def walk_in_water(
         if in_column > 0.0:
             record_crossings(
                 scene.layers, records, owner, batch, touched, x, y, z, dx, dy, dz, length,
-                weight * in_column, medium.attenuation, time, medium.speed,
+                weight * in_column, medium.attenuation, time, medium.speed, east_slowness,
+                north_slowness,
             )  # fmt: skip
         x, y, z = x + dx * length, y + dy * length, z + dz * length
         time += length / medium.speed
@@ -134,8 +142,9 @@ def walk_in_water(
             return
         if face >= 0:
             arrive_at_bottom(
-                scene, records, owner, batch, face, x, y, z, dx, dy, dz, weight, time, medium.speed
-            )
+                scene, records, owner, batch, face, x, y, z, dz, weight, time, medium.speed,
+                east_slowness, north_slowness,
+            )  # fmt: skip
             if not bounces:
                 return
             ledger[SEABED] += weight * (1.0 - scene.reflectance[face])

@@ -135,3 +135,29 @@ class Replicates:
         """Squared standard error of the mean."""
         spread = self._squares / self.count - self.mean**2
         return np.asarray(np.maximum(spread, 0.0) / (self.count - 1))
+
+
+def crossed_variance(forward: Replicates, backward: Replicates, matched: Replicates) -> FloatArray:
+    """Return the squared standard error of a mean over all pairs of two kinds of batches.
+
+    With R batches of each kind, X_ij = m + f_i + b_j + g_ij has the mean's variance
+    (s_f + s_b) / R + s_g / R^2. The means over the other kind, X_i. and X_.j, scatter by
+    s_f + s_g / R and s_b + s_g / R; the matched X_ii by s_f + s_b + s_g. The pairing's part s_g is
+    solved for, and kept within what it can be.
+
+    Examples
+    --------
+    >>> chance = np.random.default_rng(1)
+    >>> grid = chance.normal(size=(400, 1)) + chance.normal(size=400)
+    >>> grid += 3.0 * chance.normal(size=(400, 400))
+    >>> sums = [Replicates(shape=(1,)) for _ in range(3)]
+    >>> for i in range(400):
+    ...     for sum_, value in zip(sums, (grid[i].mean(), grid[:, i].mean(), grid[i, i])):
+    ...         sum_.add(np.array([value]))
+    >>> bool(abs(crossed_variance(*sums)[0] * 400 / (2 + 9 / 400) - 1) < 0.1)
+    True
+    """
+    batches = forward.count
+    apart = forward.variance_of_mean + backward.variance_of_mean
+    pairing = (matched.variance_of_mean - apart) / (batches - 2.0)
+    return np.asarray(apart - np.clip(pairing, 0.0, 0.5 * apart))

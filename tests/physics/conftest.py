@@ -1,0 +1,95 @@
+"""A flash over made scenes, the instrument being the paper's."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from survey.flight.pose import Pose
+from survey.optics.water import petzold_water
+from survey.sensor.camera import Camera
+from survey.sensor.laser import Laser
+from survey.sensor.receiver import Receiver
+from survey.transport.engine import Engine
+from survey.transport.settings import TransportSettings
+from terrain.generators import Ground, slope
+from terrain.map_frame import MapFrame
+from terrain.sea_surface import SeaSurface
+
+FRAME = MapFrame(easting=500000.0, northing=6.0e6, epsg=25832, vertical_epsg=5714)
+
+
+def make_engine(
+    *,
+    depth: float = 10.0,
+    gradient: float = 0.0,
+    reflectance: float = 0.1,
+    water: str = "coastal",
+    absorption: float | None = None,
+    scattering: float | None = None,
+    index: float = 1.33,
+    wind_speed: float = 5.0,
+    pulse_fwhm: float = 10e-9,
+    pulse_energy: float = 1.0,
+    aperture_radius: float = 0.005,
+    scale: float = 1.0,
+    seed: int = 1,
+    **settings: Any,
+) -> Engine:
+    """Return an engine over a plane seabed; ``scale`` stretches every length and time."""
+    ground = Ground(
+        map_frame=FRAME,
+        length=800.0 * scale,
+        width=800.0 * scale,
+        axis=np.pi / 2,
+        reflectance=reflectance,
+    )
+    sizes = {"patch_size": 1.0, "layer_thickness": 0.5, "cell_size": 2.0} | settings
+    for name in ("patch_size", "layer_thickness", "cell_size"):
+        sizes[name] *= scale
+    walks = sizes.pop("forward_walks_per_m2", 16.0) / scale**2
+    return Engine(
+        seabed=slope(ground=ground, depth=depth * scale, gradient=gradient),
+        surface=SeaSurface.from_wind(
+            level=0.0, wind_speed=wind_speed, wind_from=0.0, correlation_length=0.1 * scale
+        ),
+        water=petzold_water(
+            water,
+            refractive_index=index,
+            group_index=index,
+            absorption=absorption,
+            scattering=scattering,
+        ),
+        laser=Laser(pulse_energy=pulse_energy, wavelength=532e-9, pulse_fwhm=pulse_fwhm * scale),
+        camera=Camera(rows=32, columns=64, pixel_tangent=0.008, long_side="along"),
+        receiver=Receiver(
+            aperture_radius=aperture_radius * scale,
+            filter_width=1e-9,
+            optics_transmission=1.0,
+            gate_start=1.3e-6 * scale,
+            bin_width=1e-9 * scale,
+            bins=300,
+        ),
+        photo_electrons_per_photon=0.2,
+        settings=TransportSettings(forward_walks_per_m2=walks, **sizes),
+        seed=seed,
+    )
+
+
+def level_pose(*, height: float = 200.0, heading: float = 0.0) -> Pose:
+    """Return a level pose over the origin."""
+    return Pose(position=np.array([0.0, 0.0, height]), roll=0.0, pitch=0.0, heading=heading)
+
+
+@pytest.fixture
+def engine_of() -> Any:
+    """Give the maker of engines."""
+    return make_engine
+
+
+@pytest.fixture
+def nadir() -> Pose:
+    """Give a level pose 200 m over the water."""
+    return level_pose()

@@ -1,0 +1,144 @@
+"""The fast engine where the answer is known: closed forms and properties that hold exactly."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.constants import speed_of_light
+
+from survey.optics.interface import fresnel_reflectance
+
+DEPTH, REFLECTANCE, INDEX, HEIGHT = 10.0, 0.1, 1.33, 200.0
+INNER = np.s_[4:28, 8:56]
+
+
+def clear_water_echo(engine):
+    """Bottom echo of every pixel without scattering, by quadrature-free geometry.
+
+    Irradiance on the level bottom is a pixel's energy over the area it lights, which is the
+    Jacobian of the refracted footprint; the way back is that of its radiance, times T / n^2.
+    """
+    forward, right = engine.camera.pixel_centres()
+    tangent = np.hypot(forward, right)
+    cosine = 1.0 / np.sqrt(1.0 + tangent**2)
+    in_water = np.sqrt(1.0 - (1.0 - cosine**2) / INDEX**2)
+    passed = 1.0 - np.vectorize(fresnel_reflectance)(cosine, 1.0 / INDEX)
+    kept = np.exp(-engine.water.absorption * DEPTH / in_water)
+
+    def reach(t):
+        sine = t / np.sqrt(1.0 + t**2) / INDEX
+        return HEIGHT * t + DEPTH * sine / np.sqrt(1.0 - sine**2)
+
+    stretch = (reach(tangent + 1e-6) - reach(tangent - 1e-6)) / 2e-6
+    lit_area = reach(tangent) / tangent * stretch * engine.camera.pixel_tangent**2
+    pixel_energy = engine.photo_electrons / 2048
+    radiance = REFLECTANCE / np.pi * pixel_energy * passed * kept / lit_area
+    etendue = engine.receiver.aperture_area * engine.camera.pixel_tangent**2 * cosine**4
+    return radiance * kept * passed / INDEX**2 * etendue
+
+
+def test_no_scattering_gives_the_lidar_equation(engine_of, nadir):
+    """P = E_pixel T^2 (rho / pi) A / (n H + z)^2 exp(-2 c z) at nadir, within 0.5 %.
+
+    Rationale: with b = 0 light goes down and comes back, nothing else.
+    Expected: the four pixels at nadir together, and all pixels not at the edge together.
+    Source: the lidar equation; for other pixels the Jacobian of the refracted footprint.
+    """
+    engine = engine_of(scattering=0.0, wind_speed=0.0, backward_walks_per_pixel=128)
+    flashes = [engine.flash(pose=nadir, frame=frame) for frame in range(4)]
+    echo = np.mean([flash.origin("bottom").sum(axis=-1) for flash in flashes], axis=0)
+    transmitted = 1.0 - ((INDEX - 1.0) / (INDEX + 1.0)) ** 2
+    area = engine.receiver.aperture_area
+    closed = engine.photo_electrons / 2048 * transmitted**2 * REFLECTANCE / np.pi
+    closed *= area / (INDEX * HEIGHT + DEPTH) ** 2
+    closed *= np.exp(-2.0 * engine.water.absorption * DEPTH)
+    assert echo[14:18, 28:36].mean() == pytest.approx(closed, rel=0.005)
+    assert echo[INNER].sum() == pytest.approx(clear_water_echo(engine)[INNER].sum(), rel=0.002)
+    assert flashes[0].origin("column").sum() == 0.0
+
+
+def test_nothing_arrives_too_early(engine_of, nadir):
+    """No light of the bottom before the straight way there and back, none of the column
+    before the surface; the impulse response, shared over two neighbouring bins."""
+    engine = engine_of(pulse_fwhm=1e-15, wind_speed=0.0, backward_walks_per_pixel=16)
+    flash = engine.flash(pose=nadir, frame=0)
+    to_surface = 2.0 * HEIGHT / speed_of_light
+    to_bottom = to_surface + 2.0 * INDEX * DEPTH / speed_of_light
+    for origin, earliest in (("column", to_surface), ("bottom", to_bottom)):
+        early = flash.times < earliest - engine.receiver.bin_width
+        assert flash.origin(origin)[..., early].sum() == 0.0
+        assert flash.origin(origin).sum() > 0.0
+
+
+def test_black_bottom_sends_nothing(engine_of, nadir):
+    engine = engine_of(reflectance=0.0, backward_walks_per_pixel=16)
+    flash = engine.flash(pose=nadir, frame=0)
+    assert flash.origin("bottom").sum() == 0.0
+    assert flash.origin("column").sum() > 0.0
+
+
+def test_energy_of_the_forward_walks_balances(engine_of, nadir):
+    """Launched = reflected + absorbed + escaped + aside + late + in the bottom + roulette."""
+    flash = engine_of(backward_walks_per_pixel=16).flash(pose=nadir, frame=0)
+    ledger = dict(flash.ledger)
+    launched = ledger.pop("launched") + ledger.pop("facet weighting")
+    assert sum(ledger.values()) == pytest.approx(launched, rel=1e-9)
+    assert ledger["left sideways"] < 1e-3 * launched
+
+
+def test_pulse_energy_scales_exactly(engine_of, nadir):
+    """Eight times the energy gives exactly eight times the photo-electrons."""
+    few = {"backward_walks_per_pixel": 16, "forward_walks_per_m2": 4.0}
+    plain = engine_of(**few).flash(pose=nadir, frame=3).photo_electrons
+    strong = engine_of(pulse_energy=8.0, **few).flash(pose=nadir, frame=3).photo_electrons
+    assert np.array_equal(strong, 8.0 * plain)
+
+
+def test_similar_scenes_give_the_same_echo(engine_of, nadir):
+    """All lengths and times doubled, a and b halved: the same histories in the same bins."""
+    few = {"backward_walks_per_pixel": 16, "forward_walks_per_m2": 4.0}
+    plain = engine_of(absorption=0.18, scattering=0.2, **few)
+    large = engine_of(absorption=0.09, scattering=0.1, scale=2.0, **few)
+    twice = replace(nadir, position=2.0 * nadir.position)
+    echoes = plain.flash(pose=nadir, frame=1).photo_electrons
+    again = large.flash(pose=twice, frame=1).photo_electrons
+    assert np.allclose(again, echoes, rtol=1e-4, atol=1e-6 * echoes.max(axis=(1, 2, 3)).min())
+
+
+def test_the_same_flash_draws_the_same_light(engine_of, nadir):
+    few = {"backward_walks_per_pixel": 16, "forward_walks_per_m2": 4.0}
+    first, second = (engine_of(**few).flash(pose=nadir, frame=5) for _ in range(2))
+    assert np.array_equal(first.photo_electrons, second.photo_electrons)
+    assert np.array_equal(first.variance, second.variance)
+
+
+def test_isolated_pixels_see_less_than_flooded_ones(engine_of, nadir):
+    """A neighbour's light adds to a flooded pixel: the bottom echo of 10 m coastal water."""
+    few = {"backward_walks_per_pixel": 32}
+    flood = engine_of(**few).flash(pose=nadir, frame=2).photo_electrons
+    isolated = engine_of(illumination="isolated", **few).flash(pose=nadir, frame=2).photo_electrons
+    gain = flood[2].sum() / isolated[2].sum()
+    assert 1.5 < gain < 6.0
+    assert np.array_equal(flood[0], isolated[0])
+
+
+def test_still_water_is_a_mirror(engine_of, nadir):
+    """I0 rho A / (2 H)^2 in the four pixels that touch nadir, I0 launched per steradian down."""
+    engine = engine_of(wind_speed=0.0, backward_walks_per_pixel=8, forward_walks_per_m2=1.0)
+    surface = engine.flash(pose=nadir, frame=0).origin("surface").sum(axis=-1)
+    intensity = engine.photo_electrons / (0.512 * 0.256)
+    rho = ((INDEX - 1.0) / (INDEX + 1.0)) ** 2
+    closed = intensity * rho * engine.receiver.aperture_area / (2.0 * HEIGHT) ** 2
+    assert surface.sum() == pytest.approx(closed, rel=1e-6)
+    assert surface[15:17, 31:33].sum() == surface.sum()
+
+
+def test_deeper_is_later_and_on_its_side(engine_of, nadir):
+    """The bottom falls to the east; flying north, rows 16 to 31 look to the right: east."""
+    engine = engine_of(gradient=0.05, wind_speed=0.0, backward_walks_per_pixel=16)
+    flash = engine.flash(pose=nadir, frame=0)
+    echo = flash.origin("bottom")[:, 24:40]
+    centroid = (echo * flash.times).sum(axis=(1, 2)) / echo.sum(axis=(1, 2))
+    assert centroid[28] > centroid[16] > centroid[4]

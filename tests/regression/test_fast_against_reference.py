@@ -1,0 +1,97 @@
+"""The fast engine against the reference engine in a uniform frame, all pixels pooled.
+
+Both simulate the same giant telescope (40 m radius: enough light arrives for the reference), so
+that no approximation enters. The reference's result is stored with its standard errors; a short
+run of the reference engine checks that the stored one is still its own.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+
+from survey.optics.water import petzold_water
+from survey.transport.engine import Engine
+from survey.transport.settings import TransportSettings
+from terrain.generators import Ground, plane
+from terrain.map_frame import MapFrame
+from terrain.sea_surface import SeaSurface
+from tests.regression import reference_coastal as reference
+
+FLASHES = 8
+TOLERANCE = 0.02
+# 99.9 %, two-sided, of the difference: 7 and 63 degrees of freedom, the first counting more.
+QUANTILE = 4.3
+
+
+def fast_bands(**settings: Any) -> np.ndarray:
+    """Return photons (flashes, column and bottom, bands) of the fast engine."""
+    frame = MapFrame(easting=0.0, northing=0.0, epsg=25832, vertical_epsg=5714)
+    ground = Ground(map_frame=frame, length=800.0, width=800.0, reflectance=reference.REFLECTANCE)
+    engine = Engine(
+        seabed=plane(ground=ground, depth=reference.DEPTH),
+        surface=SeaSurface.from_wind(
+            level=0.0, wind_speed=0.0, wind_from=0.0, correlation_length=0.1
+        ),
+        water=petzold_water(
+            "coastal", refractive_index=reference.INDEX, group_index=reference.INDEX
+        ),
+        laser=reference.LASER,
+        camera=reference.CAMERA,
+        receiver=reference.RECEIVER,
+        photo_electrons_per_photon=1.0,
+        settings=TransportSettings(column_stride=2, **settings),
+        seed=5,
+    )
+    flashes = [engine.flash(pose=reference.POSE, frame=frame) for frame in range(FLASHES)]
+    return np.array(
+        [reference.bands(flash.photo_electrons[1:].sum(axis=(1, 2))) for flash in flashes]
+    )
+
+
+@pytest.fixture(scope="module")
+def stored() -> dict[str, np.ndarray]:
+    content = json.loads(reference.STORED.read_text(encoding="utf-8"))
+    return {name: np.array(value) for name, value in content.items() if name != "what"}
+
+
+def assert_equivalent(fast: np.ndarray, stored: dict[str, np.ndarray]) -> None:
+    """Every band with at least 3 % of its origin's light, and the sums: within 2 %.
+
+    An equivalence test: the whole 99.9 % interval of the ratio lies inside the tolerance.
+    """
+    mean, error = fast.mean(axis=0), fast.std(axis=0, ddof=1) / len(fast) ** 0.5
+    for i, origin in enumerate(("column", "bottom")):
+        truth, its_error = stored[origin], stored[f"{origin}_error"]
+        for band in np.flatnonzero(truth > 0.03 * truth.sum()):
+            spread = np.hypot(error[i, band], its_error[band]) / truth[band]
+            off = abs(mean[i, band] / truth[band] - 1.0)
+            assert off + QUANTILE * spread < TOLERANCE, (origin, band, off, spread)
+        pooled = fast[:, i].sum(axis=1)
+        off = abs(pooled.mean() / truth.sum() - 1.0)
+        spread = pooled.std(ddof=1) / len(fast) ** 0.5 / truth.sum()
+        assert off + QUANTILE * spread < TOLERANCE, (origin, "all", off, spread)
+
+
+def test_fast_engine_equals_reference_engine(stored):
+    """Coastal water, 10 m deep, bands of 10 ns, within 2 %."""
+    assert_equivalent(fast_bands(), stored)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("degrees", [20.0, 45.0])
+def test_split_angle_does_not_matter(stored, degrees):
+    """The same at other split angles: what one walk no longer does, the other does."""
+    assert_equivalent(fast_bands(split_angle=np.radians(degrees)), stored)
+
+
+def test_stored_reference_is_the_engine_s_own(stored):
+    """A short run of the reference engine, other seed: pooled light within 4 standard errors."""
+    batches = reference.run_reference(batches=16, walks_per_batch=60_000, seed=3).sum(axis=-1)
+    for i, origin in enumerate(("column", "bottom")):
+        error = batches[:, i].std(ddof=1) / 4.0
+        assert batches[:, i].mean() == pytest.approx(stored[origin].sum(), abs=4.0 * error)
+        assert error < 0.05 * stored[origin].sum()
