@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from survey.cloud.ranging import NoiseModel
 from survey.flight.pose import Frame, Pose
@@ -20,6 +21,8 @@ from survey.transport.engine import Engine
 from survey.transport.waveforms import pulse_taps
 from terrain.generators import Ground, plane
 from terrain.seabed import Seabed
+
+FloatArray = NDArray[np.float64]
 
 MODEL_FLASHES = 4
 FIRST_MODEL_FRAME = 1 << 31
@@ -83,21 +86,30 @@ def noise_model(scenario: Scenario, frame: Frame) -> NoiseModel:
         pitch=0.0,
         heading=frame.pose.heading,
     )
-    flashes = [
-        engine.flash(pose=pose, frame=FIRST_MODEL_FRAME + number) for number in range(MODEL_FLASHES)
-    ]
+    light, variance = _mean_flash(engine, pose)
     steady = _steady_counts(scenario)
     pad = int(np.ceil(3.0 * laser.pulse_sigma / receiver.bin_width))
     return NoiseModel.build(
         settings=components.ranging_settings(scenario),
         steady=steady,
-        bottomless=np.mean([flash.total for flash in flashes], axis=0) + steady,
-        flash_variance=np.mean([flash.variance.sum(axis=0) for flash in flashes], axis=0),
+        bottomless=light + steady,
+        flash_variance=variance,
         model_flashes=MODEL_FLASHES,
         pulse=pulse_taps(sigma=laser.pulse_sigma, width=receiver.bin_width, pad=pad),
         bin_start=receiver.gate_start,
         bin_width=receiver.bin_width,
     )
+
+
+def _mean_flash(engine: Engine, pose: Pose) -> tuple[FloatArray, FloatArray]:
+    """Return mean photo-electrons and mean squared error of the model's flashes, one at a time."""
+    shape = (*engine.camera.shape, engine.receiver.bins)
+    light, variance = np.zeros(shape), np.zeros(shape)
+    for number in range(MODEL_FLASHES):
+        flash = engine.flash(pose=pose, frame=FIRST_MODEL_FRAME + number)
+        light += flash.total / MODEL_FLASHES
+        variance += flash.variance.sum(axis=0) / MODEL_FLASHES
+    return light, variance
 
 
 def _engine(scenario: Scenario, seabed: Seabed) -> Engine:

@@ -17,6 +17,7 @@ from survey.products.json_file import write_json
 from survey.products.writing import write_whole
 from survey.scenario.scenario import Scenario
 
+MANIFEST = "manifest.json"
 LIBRARIES = ("numpy", "scipy", "numba", "trimesh", "laspy", "rasterio", "pyproj")
 
 
@@ -46,14 +47,15 @@ class RunFolder:
         """
         resolved = scenario.to_toml(beside=path)
         manifest = _manifest(scenario, scenario.to_toml())
-        found = path / "manifest.json"
-        if found.exists():
-            _require_same(path, json.loads(found.read_text(encoding="utf-8")), manifest)
+        found = _found_manifest(path)
+        if found is not None:
+            _require_same(path, found, manifest)
         elif path.exists() and any(path.iterdir()):
             raise OtherRunError(f"{path}: holds files but no run. Choose another folder with -o")
-        (path / "frames").mkdir(parents=True, exist_ok=True)
+        path.mkdir(parents=True, exist_ok=True)
+        write_json(path / MANIFEST, manifest)
         write_whole(path / "scenario.toml", resolved.encode())
-        write_json(found, manifest)
+        (path / "frames").mkdir(exist_ok=True)
         return cls(path=path, whole=dict(_whole_frames(path)))
 
     def frame_path(self, index: int) -> Path:
@@ -84,6 +86,18 @@ def _manifest(scenario: Scenario, resolved: str) -> dict[str, Any]:
         "versions": {name: metadata.version(name) for name in ("bathyflash", *LIBRARIES)},
         "code_sha256": _code_digest(),
     }
+
+
+def _found_manifest(path: Path) -> dict[str, Any] | None:
+    """Return the manifest in a folder; None where there is none of ours."""
+    file = path / MANIFEST
+    if not file.exists():
+        return None
+    try:
+        found = json.loads(file.read_text(encoding="utf-8"))
+    except ValueError:
+        return None
+    return found if isinstance(found, dict) and "scenario_sha256" in found else None
 
 
 def _named_files(scenario: Scenario) -> Iterator[str]:

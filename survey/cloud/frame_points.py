@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
 
 from survey.cloud.georeference import WaterPath, bend_at_surface, place_in_air, place_in_water
 from survey.cloud.points import PointClass, PointCloud
@@ -87,7 +86,7 @@ def surface_points(
     """Return the first echoes on the water: class 41."""
     on_water = first.found & ~line.land
     on_water &= np.abs(line.first[..., 2] - line.level) <= LAND_ABOVE_WATER
-    wet = targets.depth >= 0.0
+    wet = targets.classification != PointClass.GROUND
     return _cloud(
         which=on_water,
         frame=frame,
@@ -145,11 +144,16 @@ def bottom_points(
 
 
 def _stands_out(elevation: FloatArray, found: BoolArray) -> BoolArray:
-    """Tell which bottom points stand more than 1 m above the median of 15 x 15 pixels."""
+    """Tell which bottom points stand more than 1 m above the median of those in 15 x 15 pixels."""
     if not found.any():
         return found
-    filled = np.where(found, elevation, np.median(elevation[found]))
-    return filled - median_filter(filled, size=OBJECT_NEIGHBOURHOOD) > OBJECT_ABOVE_BOTTOM
+    side = OBJECT_NEIGHBOURHOOD
+    padded = np.pad(np.where(found, elevation, np.nan), side // 2, constant_values=np.nan)
+    neighbours = np.lib.stride_tricks.sliding_window_view(padded, (side, side))[found]
+    median = np.nanmedian(neighbours.reshape(-1, side * side), axis=-1)
+    result = np.zeros(found.shape, np.bool_)
+    result[found] = elevation[found] - median > OBJECT_ABOVE_BOTTOM
+    return result
 
 
 def _cloud(

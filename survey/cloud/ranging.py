@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter
+from scipy.ndimage import maximum_filter1d, uniform_filter
 from scipy.stats import norm
 
 from survey.sensor.detector import firing_probability, firing_threshold
@@ -147,14 +147,20 @@ def gate_sums(counts: FloatArray | NDArray[np.int32], gate_bins: int) -> FloatAr
 
 
 def first_echo(*, counts: NDArray[np.int32], noise: NoiseModel) -> Echo:
-    """Find the strongest gate soon after the first one that fires over sun and dark counts."""
+    """Find the crest that begins with the first gate that fires over sun and dark counts.
+
+    From the strongest of the gates soon after it, go on to the first gate that none within half a
+    gate exceeds: a strong pulse fires long before its crest.
+    """
     sums = gate_sums(counts, noise.gate_bins)
     fires = sums >= noise.surface_threshold
     start = fires.argmax(axis=-1)
     late = start + int(SURFACE_SEARCH_GATES * noise.gate_bins)
     bins = np.arange(sums.shape[-1])
     near = (bins >= start[..., None]) & (bins <= late[..., None])
-    peak = np.where(near, sums, -1.0).argmax(axis=-1)
+    strongest = np.where(near, sums, -1.0).argmax(axis=-1)
+    crest = sums == maximum_filter1d(sums, noise.gate_bins, axis=-1)
+    peak = (crest & (bins >= strongest[..., None])).argmax(axis=-1)
     steady = np.full_like(noise.bottomless, noise.steady)
     return _measured(counts, np.where(fires.any(axis=-1), peak, -1), steady, noise)
 
@@ -164,30 +170,36 @@ def last_echo(*, counts: NDArray[np.int32], noise: NoiseModel, surface_time: Flo
 
     The search begins one gate after ``surface_time`` (rows, columns) [s]; nan there says that the
     pixel sees no water. A peak on the first gate searched is the flank of something earlier and
-    no bottom. Of the last run of gates that fire, the one with most counts above the noise counts.
+    no bottom. Of the last run of gates that fire, the one with most counts above the noise counts;
+    a run ends where a gate falls under half way from noise to threshold, for the tail of an echo
+    fires here and there.
     """
     bins = np.arange(counts.shape[-1])
     dry = ~np.isfinite(surface_time)
     surface_bin = np.where(dry, 0.0, (surface_time - noise.bin_start) / noise.bin_width)
     begin = surface_bin.astype(np.int64) + int(GUARD_GATES * noise.gate_bins)
-    sums = gate_sums(counts, noise.gate_bins)
-    fires = (sums >= noise.bottom_threshold) & (bins >= begin[..., None]) & ~dry[..., None]
-    excess = sums - gate_sums(noise.bottomless, noise.gate_bins)
-    peak = np.where(_last_run(fires), excess, -np.inf).argmax(axis=-1)
+    sums, expected = (gate_sums(each, noise.gate_bins) for each in (counts, noise.bottomless))
+    searched = (bins >= begin[..., None]) & ~dry[..., None]
+    fires = (sums >= noise.bottom_threshold) & searched
+    holds = (sums >= 0.5 * (expected + noise.bottom_threshold)) & searched
+    last = _last_run(fires, holds)
+    peak = np.where(last, sums - expected, -np.inf).argmax(axis=-1)
     found = fires.any(axis=-1) & (peak > begin)
     return _measured(counts, np.where(found, peak, -1), noise.bottomless, noise)
 
 
-def _last_run(fires: BoolArray) -> BoolArray:
-    """Return the last unbroken run of true values along the last axis.
+def _last_run(fires: BoolArray, holds: BoolArray) -> BoolArray:
+    """Return what fires in the last run along the last axis; where nothing holds, a run ends.
 
     Examples
     --------
-    >>> _last_run(np.array([True, False, True, True, False])).tolist()
-    [False, False, True, True, False]
+    >>> fires = np.array([True, False, True, False, True, False])
+    >>> holds = np.array([True, False, True, True, True, False])
+    >>> _last_run(fires, holds).tolist()
+    [False, False, True, False, True, False]
     """
     after = np.cumsum(fires[..., ::-1], axis=-1)[..., ::-1]
-    breaks_after = np.cumsum((~fires & (after > 0))[..., ::-1], axis=-1)[..., ::-1]
+    breaks_after = np.cumsum((~holds & (after > 0))[..., ::-1], axis=-1)[..., ::-1]
     return np.asarray(fires & (breaks_after == 0))
 
 
@@ -200,9 +212,11 @@ def bottom_detection_probability(*, bottom: FloatArray, noise: NoiseModel) -> Fl
     echo = gate_sums(bottom, noise.gate_bins)
     best = echo.argmax(axis=-1)[..., None]
     mean = echo + gate_sums(noise.bottomless, noise.gate_bins)
-    at_best = (np.take_along_axis(each, best, -1) for each in (noise.bottom_threshold, mean))
-    threshold, expected = at_best
-    return np.asarray(firing_probability(threshold=threshold, mean=expected)[..., 0])
+    probability = firing_probability(
+        threshold=np.take_along_axis(noise.bottom_threshold, best, -1),
+        mean=np.take_along_axis(mean, best, -1),
+    )
+    return np.asarray(probability[..., 0])
 
 
 def _measured(

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from terrain.kernels import kernel
+from terrain.kernels import leaf_kernel
 
 
-@kernel
+@leaf_kernel
 def transmitted_cosine(cos_in: float, index_ratio: float) -> float:
     """Cosine of refraction by Snell's law; -1 says total internal reflection.
 
@@ -24,7 +24,7 @@ def transmitted_cosine(cos_in: float, index_ratio: float) -> float:
     return math.sqrt(squared)
 
 
-@kernel
+@leaf_kernel
 def fresnel_reflectance(cos_in: float, index_ratio: float) -> float:
     """Reflectance of unpolarised light, Fresnel; 1 beyond the critical angle.
 
@@ -41,7 +41,7 @@ def fresnel_reflectance(cos_in: float, index_ratio: float) -> float:
     return 0.5 * (across * across + within * within)
 
 
-@kernel
+@leaf_kernel
 def refracted(
     dx: float, dy: float, dz: float, mx: float, my: float, mz: float, index_ratio: float
 ) -> tuple[float, float, float]:
@@ -63,7 +63,7 @@ def refracted(
     )
 
 
-@kernel
+@leaf_kernel
 def reflected(
     dx: float, dy: float, dz: float, mx: float, my: float, mz: float
 ) -> tuple[float, float, float]:

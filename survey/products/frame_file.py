@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import zipfile
+import zlib
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -59,13 +60,13 @@ def read_frame(path: Path) -> FrameResult:
         When the file is not whole.
     """
     try:
-        with np.load(path, allow_pickle=False) as arrays:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
             return FrameResult(
                 bottom=PointCloud(**_part(arrays, "bottom")),
                 surface=PointCloud(**_part(arrays, "surface")),
                 record=PixelRecord(**_part(arrays, "pixel")),
             )
-    except (zipfile.BadZipFile, EOFError, KeyError, TypeError) as fault:
+    except (zipfile.BadZipFile, zlib.error, EOFError, TypeError, ValueError) as fault:
         raise ValueError(f"{path}: not a whole frame ({fault}). Delete it and run again") from None
 
 

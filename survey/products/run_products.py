@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from survey.cloud.points import PointClass, PointCloud
+from survey.cloud.points import Outcome, PointClass, PointCloud
 from survey.cloud.stitch import stitched
 from survey.flight.pose import Frame
 from survey.products.accuracy import BOTTOM_CLASSES, elevation_errors, metrics
@@ -65,10 +65,12 @@ def write_products(
 ) -> dict[str, Any]:
     """Stitch the frames, write every product into the run folder, and return the metrics.
 
+    A cloud without points (the water surface of a flight over land) has no file.
+
     Raises
     ------
     ProductError
-        When there is no bottom and no land at all; the text says why.
+        When no bottom and no land was found; the text says why.
     """
     records = [result.record for result in results]
     bottom = stitched([result.bottom for result in results], cell_size=settings.thinning)
@@ -114,9 +116,12 @@ def write_products(
 
 
 def _require_bottom(bottom: PointCloud, results: Sequence[FrameResult]) -> None:
-    if np.isin(bottom.classification, (*BOTTOM_CLASSES, PointClass.GROUND)).any():
-        return
-    raise ProductError(explain_empty([result.record for result in results]))
+    """Raise unless some bottom or land was truly found: a false echo alone is no seabed."""
+    records = [result.record for result in results]
+    outcome = np.concatenate([record.outcome.ravel() for record in records])
+    dry = (outcome == Outcome.DRY).any() and (bottom.classification == PointClass.GROUND).any()
+    if not dry and not (outcome == Outcome.FOUND).any():
+        raise ProductError(explain_empty(records))
 
 
 def _write_clouds(
@@ -128,6 +133,8 @@ def _write_clouds(
     settings: ProductSettings,
 ) -> None:
     for name, cloud in (("bottom", bottom), ("water_surface", surface)):
+        if len(cloud) == 0:
+            continue
         write_ply(folder / f"{name}.ply", cloud, seabed.map_frame)
         write_laz(
             folder / f"{name}.laz",

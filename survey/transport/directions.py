@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.transport.random import uniform
-from terrain.kernels import kernel
+from terrain.kernels import leaf_kernel
 
 
-@kernel
+@leaf_kernel
 def turned(
     dx: float, dy: float, dz: float, one_minus_cos: float, azimuth: float
 ) -> tuple[float, float, float]:
@@ -29,7 +29,7 @@ def turned(
     return nx * norm, ny * norm, nz * norm
 
 
-@kernel
+@leaf_kernel
 def drawn(sampler: NDArray[np.float64], share: float, state: NDArray[np.uint64]) -> float:
     """Draw 1 - cos of a scattering angle from the forward ``share`` of a phase function."""
     place = uniform(state) * share * (sampler.shape[0] - 1)
@@ -37,7 +37,7 @@ def drawn(sampler: NDArray[np.float64], share: float, state: NDArray[np.uint64])
     return float(sampler[i] + (place - i) * (sampler[i + 1] - sampler[i]))
 
 
-@kernel
+@leaf_kernel
 def lambert_direction(
     nx: float, ny: float, nz: float, state: NDArray[np.uint64]
 ) -> tuple[float, float, float]:

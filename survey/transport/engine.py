@@ -21,7 +21,7 @@ from survey.sensor.camera import Camera
 from survey.sensor.laser import Laser
 from survey.sensor.receiver import Receiver
 from survey.transport.glint import add_glint, add_mirror
-from survey.transport.join import FORWARD, join_in_column, join_on_patches
+from survey.transport.join import Echoes, join_in_column, join_on_patches
 from survey.transport.launch import Address, Optics, launch_backward, launch_forward
 from survey.transport.random import SURFACE, chance
 from survey.transport.records import LEDGER_NAMES, Records, empty_records, overflowed, trimmed
@@ -35,7 +35,7 @@ from survey.transport.scene import (
 )
 from survey.transport.settings import TransportSettings
 from survey.transport.waveforms import (
-    Replicates,
+    PULSE_REACH,
     Waveforms,
     blurred,
     crossed_variance,
@@ -49,6 +49,8 @@ if TYPE_CHECKING:
     from terrain.seabed import Seabed
 
 FloatArray = NDArray[np.float64]
+
+COARSE_SHARE = 0.4
 
 
 def kernel_optics(*, camera: Camera, receiver: Receiver, pose: Pose) -> Optics:
@@ -130,6 +132,7 @@ class Engine:
             bins=receiver.bins,
             sigma=laser.pulse_sigma,
         )
+        self._coarse = max(1, int(laser.pulse_fwhm * COARSE_SHARE / receiver.bin_width))
         self._taps = pulse_taps(sigma=laser.pulse_sigma, width=receiver.bin_width, pad=pad)
 
     def flash(self, *, pose: Pose, frame: int) -> Waveforms:
@@ -160,7 +163,7 @@ class Engine:
         )
 
     def _forward_walks(self, scene: Scene, optics: Optics, address: Address) -> Records:
-        batches = self.settings.replicates
+        batches, stride = self.settings.replicates, self.settings.forward_column_stride
         height = optics.position[2] - scene.sea.level
         length, width = (2.0 * half * height for half in (optics.half_forward, optics.half_right))
         spacing = (batches / self.settings.forward_walks_per_m2) ** 0.5
@@ -170,14 +173,18 @@ class Engine:
             for batch in range(batches):
                 launch_forward(
                     scene, self._forward, optics, records, address, batch, along, across,
-                    self.photo_electrons,
+                    stride, self.photo_electrons,
                 )  # fmt: skip
 
         walks = batches * along * across
-        return _until_it_fits(launch, arrivals=2 * walks, crossings=2 * walks * scene.layers.planes)
+        crossings = 2 * walks // stride * scene.layers.planes
+        return _until_it_fits(launch, arrivals=2 * walks, crossings=crossings)
 
     def _backward_walks(self, scene: Scene, optics: Optics, address: Address) -> Records:
-        walks, stride = self.settings.backward_walks_per_replicate, self.settings.column_stride
+        walks, stride = (
+            self.settings.backward_walks_per_replicate,
+            self.settings.backward_column_stride,
+        )
         batches = self.settings.replicates
 
         def launch(records: Records) -> None:
@@ -193,9 +200,8 @@ class Engine:
 
     def _joined(
         self, scene: Scene, forward: Records, backward: Records, address: Address
-    ) -> NDArray[np.float32]:
-        pixels = self.camera.rows * self.camera.columns
-        echoes = np.zeros((3, self.settings.replicates, 2, pixels, self._bins.number), np.float32)
+    ) -> Echoes:
+        echoes = self._empty_echoes()
         isolated = self.settings.illumination == "isolated"
         order = np.argsort(forward.patch, kind="stable")
         patches = forward.patch[order]
@@ -212,14 +218,29 @@ class Engine:
         )  # fmt: skip
         return echoes
 
-    def _estimate(self, echoes: NDArray[np.float32]) -> tuple[FloatArray, FloatArray]:
-        """Return mean and squared standard error (2, pixels, bins), the pulse's width included."""
-        shape = (2, echoes.shape[3], self.receiver.bins)
-        sides = [Replicates(shape=shape) for _ in echoes]
-        for side, batches in zip(sides, echoes, strict=True):
-            for batch in batches:
-                side.add(np.stack([blurred(origin, self._taps) for origin in batch]))
-        return sides[FORWARD].mean, crossed_variance(*sides)
+    def _empty_echoes(self) -> Echoes:
+        pixels, batches = self.camera.rows * self.camera.columns, self.settings.replicates
+        return Echoes(
+            mean=np.zeros((2, pixels, self._bins.number), np.float32),
+            batches=np.zeros(
+                (3, batches, 2, pixels, self._bins.number // self._coarse + 1), np.float32
+            ),
+            coarse=self._coarse,
+        )
+
+    def _estimate(self, echoes: Echoes) -> tuple[FloatArray, FloatArray]:
+        """Return mean and squared standard error (2, pixels, bins), the pulse's width included.
+
+        The error is told in coarse bins, within which the pulse makes all fine ones rise and fall
+        together.
+        """
+        mean = np.stack([blurred(origin, self._taps) for origin in echoes.mean])
+        width = self.receiver.bin_width * self._coarse
+        reach = int(np.ceil(PULSE_REACH * self.laser.pulse_sigma / width)) + 1
+        taps = pulse_taps(sigma=self.laser.pulse_sigma, width=width, pad=reach)
+        variance = crossed_variance(echoes.batches, taps.astype(np.float32))
+        fine = np.arange(self.receiver.bins) + (self._bins.number - self.receiver.bins) // 2
+        return mean, variance[..., fine // self._coarse] / self._coarse**2
 
     def _surface_echo(self, scene: Scene, optics: Optics) -> FloatArray:
         histogram = np.zeros((optics.rows * optics.columns, self._bins.number))

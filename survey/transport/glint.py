@@ -13,14 +13,14 @@ from survey.transport.join import TimeBins, deposit
 from survey.transport.launch import Optics, direction_of, pixel_at
 from survey.transport.scene import Scene
 from survey.transport.surface import glint_per_steradian
-from terrain.kernels import kernel
+from terrain.kernels import leaf_kernel
 from terrain.raycast import first_hit
 
 SAMPLES_ACROSS_PIXEL = 4
 MIRROR_SAMPLES = 4096
 
 
-@kernel
+@leaf_kernel
 def add_glint(
     histogram: NDArray[np.float64],
     bins: TimeBins,
@@ -53,7 +53,7 @@ def add_glint(
         deposit(histogram, pixel, bins, 2.0 * length / speed_of_light, returned)
 
 
-@kernel
+@leaf_kernel
 def add_mirror(
     histogram: NDArray[np.float64],
     bins: TimeBins,

@@ -1,8 +1,7 @@
 """Joining forward and backward walks at the last turn of the light's path.
 
-Every forward batch is paired with every backward batch. ``echoes`` (3, batches, 2, pixels, bins)
-holds, for each forward batch, its mean over the backward ones; the same the other way round; and
-forward batches with the backward batch of the same number alone. Then column and bottom.
+Every forward batch is paired with every backward batch. The sum over all pairs goes into the fine
+bins of the waveform; what the batches say apart, from which the error is told, into coarse ones.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 
 from survey.transport.random import COLUMN_PAIRS, start_stream, uniform
 from survey.transport.records import Records
-from terrain.kernels import kernel
+from terrain.kernels import kernel, leaf_kernel
 
 COLUMN, BOTTOM = 0, 1
 FORWARD, BACKWARD, MATCHED = 0, 1, 2
@@ -28,7 +27,21 @@ class TimeBins(NamedTuple):
     number: int
 
 
-@kernel
+class Echoes(NamedTuple):
+    """What the pairs add up to, column and bottom (``origin``) apart.
+
+    ``mean`` (2, pixels, bins) is the mean over all pairs of batches. ``batches`` (3, batches, 2,
+    pixels, coarse bins) holds for each forward batch its mean over the backward ones; the same
+    the other way round; and forward batches with the backward batch of the same number alone.
+    A coarse bin has ``coarse`` fine ones.
+    """
+
+    mean: NDArray[np.float32]
+    batches: NDArray[np.float32]
+    coarse: int
+
+
+@leaf_kernel
 def deposit(
     histogram: NDArray[np.floating], pixel: int, bins: TimeBins, time: float, photons: float
 ) -> None:
@@ -42,9 +55,9 @@ def deposit(
         histogram[pixel, low + 1] += photons * part
 
 
-@kernel
+@leaf_kernel
 def deposit_pair(
-    echoes: NDArray[np.float32],
+    echoes: Echoes,
     origin: int,
     pixel: int,
     bins: TimeBins,
@@ -53,17 +66,26 @@ def deposit_pair(
     time: float,
     photons: float,
 ) -> None:
-    """Add one pair to the estimates of its forward and of its backward batch."""
-    batches = echoes.shape[1]
-    deposit(echoes[FORWARD, forward_batch, origin], pixel, bins, time, photons / batches)
-    deposit(echoes[BACKWARD, backward_batch, origin], pixel, bins, time, photons / batches)
+    """Add one pair, shared between the two bins whose centres enclose its time."""
+    place = (time - bins.start) / bins.width - 0.5
+    low = int(np.floor(place))
+    if not 0 <= low < bins.number - 1:
+        return
+    batches = echoes.batches.shape[1]
+    late = photons * (place - low)
+    share = 1.0 / (batches * batches)
+    echoes.mean[origin, pixel, low] += (photons - late) * share
+    echoes.mean[origin, pixel, low + 1] += late * share
+    coarse = int(place + 0.5) // echoes.coarse
+    echoes.batches[FORWARD, forward_batch, origin, pixel, coarse] += photons / batches
+    echoes.batches[BACKWARD, backward_batch, origin, pixel, coarse] += photons / batches
     if forward_batch == backward_batch:
-        deposit(echoes[MATCHED, forward_batch, origin], pixel, bins, time, photons)
+        echoes.batches[MATCHED, forward_batch, origin, pixel, coarse] += photons
 
 
-@kernel
+@leaf_kernel
 def join_on_patches(
-    echoes: NDArray[np.float32],
+    echoes: Echoes,
     bins: TimeBins,
     forward: Records,
     order: NDArray[np.int64],
@@ -109,7 +131,7 @@ def sorted_by_key(
     return start, order
 
 
-@kernel
+@leaf_kernel
 def turn_density(
     forward: Records,
     f: int,
@@ -119,8 +141,8 @@ def turn_density(
     split_cosine: float,
 ) -> float:
     """Phase function at the angle between two crossings [1/sr]; 0 within the split angle."""
-    to, fro = forward.cell_direction[f], backward.cell_direction[b]
-    cosine = -(to[0] * fro[0] + to[1] * fro[1] + to[2] * fro[2])
+    to, fro = forward.cell_direction, backward.cell_direction
+    cosine = -(to[f, 0] * fro[b, 0] + to[f, 1] * fro[b, 1] + to[f, 2] * fro[b, 2])
     if cosine >= split_cosine:
         return 0.0
     place = max(0.0, 0.5 * (cosine + 1.0) * (cosine_table.shape[0] - 1))
@@ -130,7 +152,7 @@ def turn_density(
 
 @kernel
 def join_in_column(
-    echoes: NDArray[np.float32],
+    echoes: Echoes,
     bins: TimeBins,
     forward: Records,
     backward: Records,
@@ -148,7 +170,7 @@ def join_in_column(
     crossing of the cell is drawn and stands for all of them. Light that has touched the bottom
     before counts as bottom.
     """
-    batches = echoes.shape[1]
+    batches = echoes.batches.shape[1]
     start, order = sorted_by_key(forward.cell, forward.cell_batch, cells, batches)
     state = np.empty(2, np.uint64)
     start_stream(state, seed, COLUMN_PAIRS, frame, 0, 0)

@@ -14,7 +14,7 @@ from survey.transport.records import ESCAPED, FACETS, LAUNCHED, REFLECTED, Recor
 from survey.transport.scene import Medium, Scene
 from survey.transport.surface import enter_water
 from survey.transport.walk import arrive_at_bottom, walk_in_water
-from terrain.kernels import kernel
+from terrain.kernels import kernel, leaf_kernel
 from terrain.raycast import first_hit
 
 # Roberts (2018): additive recurrences of low discrepancy in one and three dimensions.
@@ -46,13 +46,13 @@ class Address(NamedTuple):
     frame: int
 
 
-@kernel
+@leaf_kernel
 def fraction(value: float) -> float:
     """Part of a positive number behind the point."""
     return value - math.floor(value)
 
 
-@kernel
+@leaf_kernel
 def pixel_at(optics: Optics, forward: float, right: float) -> int:
     """Flat index of the pixel that looks along the tangents (forward, right); -1 outside."""
     from_front = 0.5 * (1.0 - forward / optics.half_forward)
@@ -64,7 +64,7 @@ def pixel_at(optics: Optics, forward: float, right: float) -> int:
     return int(from_front * optics.rows) * optics.columns + int(from_left * optics.columns)
 
 
-@kernel
+@leaf_kernel
 def direction_of(optics: Optics, forward: float, right: float) -> tuple[float, float, float, float]:
     """Unit direction on the map of the tangents (forward, right), and its cosine to boresight."""
     cosine = 1.0 / math.sqrt(1.0 + forward * forward + right * right)
@@ -77,7 +77,7 @@ def direction_of(optics: Optics, forward: float, right: float) -> tuple[float, f
     )
 
 
-@kernel
+@leaf_kernel
 def fly_down(
     scene: Scene,
     medium: Medium,
@@ -145,16 +145,18 @@ def launch_forward(
     batch: int,
     along: int,
     across: int,
+    column_stride: int,
     photons: float,
 ) -> None:
     """Launch along x across walks that share the pulse's photons evenly over the field of view.
 
     One walk starts in each cell of a regular division of the field of view (stratified), and the
-    first optical paths follow a golden-ratio sequence with a random shift.
+    first optical paths follow a golden-ratio sequence with a random shift. One walk in
+    ``column_stride`` takes part in the water column, in its stead and the others'.
     """
     state = np.empty(2, np.uint64)
     start_stream(state, address.seed, FORWARD, address.frame, batch, -1)
-    shift = uniform(state)
+    shift, column_shift = uniform(state), uniform(state)
     walks = along * across
     for i in range(walks):
         start_stream(state, address.seed, FORWARD, address.frame, batch, i)
@@ -162,10 +164,11 @@ def launch_forward(
         right = ((i % across + uniform(state)) / across * 2.0 - 1.0) * optics.half_right
         dx, dy, dz, _ = direction_of(optics, forward, right)
         first_path = -math.log(1.0 - fraction(shift + i * GOLDEN))
+        drawn = fraction(column_shift + i * PLASTIC_1) * column_stride < 1.0
         fly_down(
             scene, medium, records, state, pixel_at(optics, forward, right), batch,
             optics.position[0], optics.position[1], optics.position[2], dx, dy, dz,
-            photons / walks, 1.0, first_path, 1.0, True,
+            photons / walks, 1.0, first_path, float(column_stride) if drawn else 0.0, True,
         )  # fmt: skip
 
 

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from terrain.kernels import kernel
+from terrain.kernels import leaf_kernel
 
 FORWARD, BACKWARD, COLUMN_PAIRS, SURFACE, COUNTS, REFERENCE = range(6)
 
@@ -29,7 +29,7 @@ def chance(*, seed: int, purpose: int, frame: int) -> np.random.Generator:
     return np.random.Generator(np.random.Philox(key=seed, counter=[0, 0, frame, purpose]))
 
 
-@kernel
+@leaf_kernel
 def philox(
     c0: np.uint64, c1: np.uint64, c2: np.uint64, c3: np.uint64, k0: np.uint64, k1: np.uint64
 ) -> tuple[np.uint64, np.uint64, np.uint64, np.uint64]:
@@ -46,7 +46,7 @@ def philox(
     return c0, c1, c2, c3
 
 
-@kernel
+@leaf_kernel
 def start_stream(
     state: NDArray[np.uint64], seed: int, purpose: int, frame: int, batch: int, photon: int
 ) -> None:
@@ -64,7 +64,7 @@ def start_stream(
     state[1] = (r2 << _HALF) | r3 | np.uint64(1)
 
 
-@kernel
+@leaf_kernel
 def uniform(state: NDArray[np.uint64]) -> float:
     """Next uniform number in [0, 1), 53 bits."""
     s0, s1 = state[0], state[1]
@@ -75,13 +75,13 @@ def uniform(state: NDArray[np.uint64]) -> float:
     return float(result >> np.uint64(11)) * _TO_UNIT
 
 
-@kernel
+@leaf_kernel
 def exponential(state: NDArray[np.uint64]) -> float:
     """Next exponential number of mean one."""
     return -math.log(1.0 - uniform(state))
 
 
-@kernel
+@leaf_kernel
 def mixed(value: np.uint64) -> np.uint64:
     """Scramble 64 bits (the finaliser of SplitMix64, Steele et al. 2014)."""
     value = (value ^ (value >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.transport.scene import Layers
-from terrain.kernels import kernel
+from terrain.kernels import leaf_kernel
 
 LAUNCHED, FACETS, REFLECTED, ABSORBED, ESCAPED, ASIDE, LATE, SEABED, ROULETTE = range(9)
 LEDGER_NAMES = (
@@ -84,7 +84,7 @@ def overflowed(records: Records) -> bool:
     return bool(records.filled[0] > len(records.patch) or records.filled[1] > len(records.cell))
 
 
-@kernel
+@leaf_kernel
 def record_arrival(
     records: Records,
     patch: int,
@@ -107,7 +107,7 @@ def record_arrival(
     records.patch_gain[i] = gain
 
 
-@kernel
+@leaf_kernel
 def record_crossings(
     layers: Layers,
     records: Records,

@@ -32,21 +32,21 @@ from survey.transport.join import TimeBins, deposit
 from survey.transport.launch import Optics, direction_of, pixel_at
 from survey.transport.random import REFERENCE, exponential, start_stream, uniform
 from survey.transport.scene import Medium, forward_medium
-from terrain.kernels import kernel
+from terrain.kernels import kernel, leaf_kernel
 
 FloatArray = NDArray[np.float64]
 COLUMN, BOTTOM = 0, 1
 AIMED, AIMED_WITHIN = 0.2, 1.0 - math.cos(math.radians(45.0))
 
 
-@kernel
+@leaf_kernel
 def _density_at(cosine: float, table: FloatArray) -> float:
     place = max(0.0, 0.5 * (cosine + 1.0)) * (table.shape[0] - 1)
     i = min(int(place), table.shape[0] - 2)
     return float(table[i] + (place - i) * (table[i + 1] - table[i]))
 
 
-@kernel
+@leaf_kernel
 def _reaches_aperture(
     optics: Optics, x: float, y: float, z: float, ux: float, uy: float, uz: float
 ) -> float:
@@ -58,7 +58,7 @@ def _reaches_aperture(
     return length if length > 0.0 and miss <= optics.aperture_radius**2 else -1.0
 
 
-@kernel
+@leaf_kernel
 def _line_of_view(
     optics: Optics, index: float, forward: float, right: float
 ) -> tuple[float, float, float, float, float, float, float]:
@@ -73,7 +73,7 @@ def _line_of_view(
     return -wx, -wy, -wz, -ax, -ay, -az, solid * az / (wz * index * index)
 
 
-@kernel
+@leaf_kernel
 def _seen_along(optics: Optics, ux: float, uy: float, uz: float) -> tuple[float, float, int]:
     """Return the tangents under which the camera sees light going along u, and the pixel."""
     t = optics.turn
@@ -85,7 +85,7 @@ def _seen_along(optics: Optics, ux: float, uy: float, uz: float) -> tuple[float,
     return forward, right, pixel_at(optics, forward, right)
 
 
-@kernel
+@leaf_kernel
 def _scattered(
     medium: Medium, table: FloatArray, state: NDArray[np.uint64], dx: float, dy: float, dz: float
 ) -> tuple[float, float, float, float]:
@@ -104,7 +104,7 @@ def _scattered(
     return nx, ny, nz, density / ((1.0 - AIMED) * density + AIMED * aimed)
 
 
-@kernel
+@leaf_kernel
 def _score_straight_exit(
     histogram: FloatArray,
     bins: TimeBins,
@@ -146,7 +146,7 @@ def _score_straight_exit(
     deposit(histogram, 0, bins, time + slant / medium.speed + length / speed_of_light, score)
 
 
-@kernel
+@leaf_kernel
 def _count_arrival(
     histogram: FloatArray,
     bins: TimeBins,
@@ -169,7 +169,7 @@ def _count_arrival(
         deposit(histogram, 0, bins, time + length / speed_of_light, weight)
 
 
-@kernel
+@leaf_kernel
 def _follow(
     column: FloatArray,
     bottom: FloatArray,

@@ -30,8 +30,8 @@ class TransportSettings:
         Side of the cells of such a plane [m].
     illumination : {"flood", "isolated"}
         Whether a pixel sees the light launched into every cone or into its own alone.
-    column_stride : int
-        One backward walk in this many takes part in the water column.
+    forward_column_stride, backward_column_stride : int
+        One walk in this many of either kind takes part in the water column.
     """
 
     forward_walks_per_m2: float = 16.0
@@ -42,7 +42,8 @@ class TransportSettings:
     layer_thickness: float = 0.5
     cell_size: float = 2.0
     illumination: Literal["flood", "isolated"] = "flood"
-    column_stride: int = 8
+    forward_column_stride: int = 2
+    backward_column_stride: int = 8
 
     @property
     def backward_walks_per_replicate(self) -> int:

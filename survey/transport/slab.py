@@ -16,7 +16,7 @@ from survey.optics.interface import fresnel_reflectance, refracted
 from survey.optics.phase import PhaseFunction
 from survey.transport.directions import drawn, lambert_direction, turned
 from survey.transport.random import REFERENCE, exponential, start_stream, uniform
-from terrain.kernels import kernel
+from terrain.kernels import kernel, leaf_kernel
 
 FloatArray = NDArray[np.float64]
 
@@ -43,7 +43,7 @@ class SlabResult:
     path_bin: float
 
 
-@kernel
+@leaf_kernel
 def _slab_walk(
     sent: FloatArray,
     tau: float,

@@ -9,12 +9,12 @@ import numpy as np
 from survey.optics.interface import fresnel_reflectance, reflected, refracted
 from survey.transport.random import mixed
 from survey.transport.scene import Sea
-from terrain.kernels import kernel
+from terrain.kernels import leaf_kernel
 
 _TO_UNIT = 1.0 / (1 << 53)
 
 
-@kernel
+@leaf_kernel
 def facet_normal(sea: Sea, x: float, y: float) -> tuple[float, float, float]:
     """Upward unit normal of the facet at a place: one Gaussian slope for each square.
 
@@ -38,7 +38,7 @@ def facet_normal(sea: Sea, x: float, y: float) -> tuple[float, float, float]:
     return -slope_x * norm, -slope_y * norm, norm
 
 
-@kernel
+@leaf_kernel
 def enter_water(
     sea: Sea, index: float, x: float, y: float, dx: float, dy: float, dz: float
 ) -> tuple[float, float, float, float, float]:
@@ -56,7 +56,7 @@ def enter_water(
     return rx, ry, rz, caught, fresnel_reflectance(cos_in, 1.0 / index)
 
 
-@kernel
+@leaf_kernel
 def reflectance_from_below(
     sea: Sea, index: float, x: float, y: float, dx: float, dy: float, dz: float
 ) -> tuple[float, float, float, float]:
@@ -73,7 +73,7 @@ def reflectance_from_below(
     return fresnel_reflectance(cos_in, index), rx, ry, -abs(rz)
 
 
-@kernel
+@leaf_kernel
 def glint_per_steradian(sea: Sea, index: float, dx: float, dy: float, dz: float) -> float:
     """Return of the surface to where the light came from, per incident power [1/sr].
 

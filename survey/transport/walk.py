@@ -22,7 +22,7 @@ from survey.transport.records import (
 )
 from survey.transport.scene import Bounds, Medium, Scene
 from survey.transport.surface import reflectance_from_below
-from terrain.kernels import kernel
+from terrain.kernels import leaf_kernel
 from terrain.patches import patch_at
 from terrain.raycast import first_hit
 
@@ -31,7 +31,7 @@ ROULETTE_SURVIVAL = 0.1
 LIFT = 1e-7
 
 
-@kernel
+@leaf_kernel
 def arrive_at_bottom(
     scene: Scene,
     records: Records,
@@ -66,7 +66,7 @@ def arrive_at_bottom(
     )
 
 
-@kernel
+@leaf_kernel
 def facing_normal(
     scene: Scene, face: int, dx: float, dy: float, dz: float
 ) -> tuple[float, float, float]:
@@ -78,13 +78,13 @@ def facing_normal(
     return nx, ny, nz
 
 
-@kernel
+@leaf_kernel
 def is_inside(bounds: Bounds, x: float, y: float) -> bool:
     """Tell whether a walk is still within the box that is followed."""
     return bounds.west < x < bounds.east and bounds.south < y < bounds.north
 
 
-@kernel
+@leaf_kernel
 def walk_in_water(
     scene: Scene,
     medium: Medium,

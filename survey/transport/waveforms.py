@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,47 +97,10 @@ def blurred(histogram: NDArray[np.floating], taps: NDArray[np.float64]) -> NDArr
     return result
 
 
-@dataclass(kw_only=True)
-class Replicates:
-    """Running sums over independent repetitions of the same estimate.
-
-    Examples
-    --------
-    >>> sums = Replicates(shape=(1,))
-    >>> for value in (1.0, 3.0):
-    ...     sums.add(np.array([value]))
-    >>> float(sums.mean[0]), float(sums.variance_of_mean[0])
-    (2.0, 1.0)
-    """
-
-    shape: tuple[int, ...]
-    count: int = 0
-    _sum: FloatArray = field(init=False)
-    _squares: FloatArray = field(init=False)
-
-    def __post_init__(self) -> None:
-        self._sum = np.zeros(self.shape)
-        self._squares = np.zeros(self.shape)
-
-    def add(self, value: FloatArray) -> None:
-        """Add one repetition."""
-        self._sum += value
-        self._squares += value * value
-        self.count += 1
-
-    @property
-    def mean(self) -> FloatArray:
-        """Mean of the repetitions."""
-        return np.asarray(self._sum / self.count)
-
-    @property
-    def variance_of_mean(self) -> FloatArray:
-        """Squared standard error of the mean."""
-        spread = self._squares / self.count - self.mean**2
-        return np.asarray(np.maximum(spread, 0.0) / (self.count - 1))
-
-
-def crossed_variance(forward: Replicates, backward: Replicates, matched: Replicates) -> FloatArray:
+@kernel
+def crossed_variance(
+    batches: NDArray[np.float32], taps: NDArray[np.float32]
+) -> NDArray[np.float32]:
     """Return the squared standard error of a mean over all pairs of two kinds of batches.
 
     With R batches of each kind, X_ij = m + f_i + b_j + g_ij has the mean's variance
@@ -145,19 +108,39 @@ def crossed_variance(forward: Replicates, backward: Replicates, matched: Replica
     s_f + s_g / R and s_b + s_g / R; the matched X_ii by s_f + s_b + s_g. The pairing's part s_g is
     solved for, and kept within what it can be.
 
-    Examples
-    --------
-    >>> chance = np.random.default_rng(1)
-    >>> grid = chance.normal(size=(400, 1)) + chance.normal(size=400)
-    >>> grid += 3.0 * chance.normal(size=(400, 400))
-    >>> sums = [Replicates(shape=(1,)) for _ in range(3)]
-    >>> for i in range(400):
-    ...     for sum_, value in zip(sums, (grid[i].mean(), grid[:, i].mean(), grid[i, i])):
-    ...         sum_.add(np.array([value]))
-    >>> bool(abs(crossed_variance(*sums)[0] * 400 / (2 + 9 / 400) - 1) < 0.1)
-    True
+    Parameters
+    ----------
+    batches : array (3, R, origins, pixels, bins)
+        X_i., X_.j and X_ii, without the pulse's width.
+    taps : array (odd number,)
+        The pulse, with which every row is convolved first.
+
+    Returns
+    -------
+    array (origins, pixels, bins)
     """
-    batches = forward.count
-    apart = forward.variance_of_mean + backward.variance_of_mean
-    pairing = (matched.variance_of_mean - apart) / (batches - 2.0)
-    return np.asarray(apart - np.clip(pairing, 0.0, 0.5 * apart))
+    _, count, origins, pixels, bins = batches.shape
+    result = np.empty((origins, pixels, bins), np.float32)
+    half = taps.shape[0] // 2
+    for origin in range(origins):
+        for pixel in range(pixels):
+            total = np.zeros((3, bins), np.float32)
+            squares = np.zeros((3, bins), np.float32)
+            row = np.empty(bins, np.float32)
+            for side in range(3):
+                for batch in range(count):
+                    row[:] = 0.0
+                    for i in range(bins):
+                        photons = batches[side, batch, origin, pixel, i]
+                        if photons != 0.0:
+                            for j in range(max(0, i - half), min(bins, i + half + 1)):
+                                row[j] += photons * taps[j - i + half]
+                    total[side] += row
+                    squares[side] += row * row
+            for i in range(bins):
+                scatter = squares[:, i] - total[:, i] * total[:, i] / count
+                scatter /= count * (count - 1.0)
+                apart = scatter[0] + scatter[1]
+                pairing = (scatter[2] - apart) / (count - 2.0)
+                result[origin, pixel, i] = apart - min(max(pairing, 0.0), 0.5 * apart)
+    return result

@@ -43,7 +43,7 @@ def fast_bands(**settings: Any) -> np.ndarray:
         camera=reference.CAMERA,
         receiver=reference.RECEIVER,
         photo_electrons_per_photon=1.0,
-        settings=TransportSettings(column_stride=2, **settings),
+        settings=TransportSettings(backward_column_stride=2, **settings),
         seed=5,
     )
     flashes = [engine.flash(pose=reference.POSE, frame=frame) for frame in range(FLASHES)]

@@ -1,18 +1,28 @@
-"""A survey made by hand, for the tests of products and pictures: no light is simulated."""
+"""Surveys and single looks made by hand, without light, for the tests of clouds and products."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from typing import Literal
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.constants import speed_of_light
 
+from survey.cloud.georeference import pixel_rays
 from survey.cloud.points import Outcome, PixelRecord, PointClass, PointCloud
+from survey.cloud.ranging import Echo
+from survey.cloud.truth import TrueTargets, true_targets
 from survey.flight.pose import Frame, Pose
+from survey.optics.water import Water, petzold_water
+from survey.sensor.camera import Camera
+from terrain.generators import Ground, slope
 from terrain.map_frame import MapFrame
+from terrain.sea_surface import SeaSurface
+from terrain.seabed import Seabed
 
 FloatArray = NDArray[np.float64]
 HEADING = np.radians(70.0)
@@ -147,3 +157,83 @@ def survey_of() -> SurveyMaker:
 def small_survey() -> Survey:
     """Four lines of eight frames, 16 x 8 pixels each."""
     return make_survey()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Look:
+    """One frame over a known seabed, and where its rays truly end."""
+
+    frame: Frame
+    seabed: Seabed
+    surface: SeaSurface
+    water: Water
+    rays: FloatArray
+    targets: TrueTargets
+
+    @staticmethod
+    def echo(time: FloatArray) -> Echo:
+        """Return echoes at two-way times [s], nan where there is none."""
+        there = np.isfinite(time)
+        return Echo(
+            time=np.where(there, time, np.nan),
+            counts=np.where(there, 500.0, np.nan),
+            snr=np.where(there, 20.0, np.nan),
+        )
+
+    @property
+    def surface_time(self) -> FloatArray:
+        """Two-way times to the water, or to land where it is dry [s]."""
+        way = self.targets.surface - self.frame.pose.position
+        return np.asarray(2.0 * np.linalg.norm(way, axis=-1) / speed_of_light)
+
+
+LookMaker = Callable[..., Look]
+
+
+def make_look(
+    *,
+    depth: float = 6.0,
+    gradient: float = 0.05,
+    heading_deg: float = 70.0,
+    roll_deg: float = 0.0,
+    pitch_deg: float = 0.0,
+    long_side: Literal["along", "across"] = "along",
+    level: float = 0.4,
+    seabed: Seabed | None = None,
+) -> Look:
+    """Return a look from 200 m at a bed that falls eastwards, ``depth`` below zero at nadir."""
+    camera = Camera(rows=32, columns=64, pixel_tangent=0.008, long_side=long_side)
+    pose = Pose(
+        position=np.array([30.0, -20.0, level + 200.0]),
+        roll=np.radians(roll_deg),
+        pitch=np.radians(pitch_deg),
+        heading=np.radians(heading_deg),
+    )
+    ground = Ground(
+        map_frame=MapFrame(easting=5e5, northing=6e6, epsg=25832, vertical_epsg=5714),
+        centre=(30.0, -20.0),
+        length=400.0,
+        width=400.0,
+        axis=np.pi / 2.0,
+        reflectance=0.1,
+    )
+    bed = slope(ground=ground, depth=depth, gradient=gradient) if seabed is None else seabed
+    surface = SeaSurface.from_wind(
+        level=level, wind_speed=5.0, wind_from=0.0, correlation_length=0.1
+    )
+    water = petzold_water("coastal", refractive_index=1.3415, group_index=1.36)
+    rays = pixel_rays(camera=camera, pose=pose)
+    return Look(
+        frame=Frame(index=7, line=2, time=63.0, pose=pose),
+        seabed=bed,
+        surface=surface,
+        water=water,
+        rays=rays,
+        targets=true_targets(seabed=bed, surface=surface, water=water, pose=pose, rays=rays),
+    )
+
+
+@pytest.fixture(scope="session")
+def look_at() -> LookMaker:
+    """The maker of looks."""
+    return make_look

@@ -1,0 +1,122 @@
+"""The scenarios of the gallery, flown with less work, show what they promise."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from survey.cloud.points import PointClass, PointCloud
+from survey.cloud.stitch import stitched
+from survey.mission import fly_frame
+from survey.preparation import Mission, prepare
+from survey.scenario.load import load_scenario
+
+FloatArray = NDArray[np.float64]
+LESS_WORK = {"transport.forward_walks_per_m2": 8.0, "transport.backward_walks_per_pixel": 32}
+BOTTOM = (PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT)
+
+
+def flown(name: str, frames: slice, **changes: Any) -> tuple[Mission, list[PointCloud]]:
+    mission = prepare(load_scenario(name).replace(**LESS_WORK, **changes))
+    return mission, [fly_frame(mission, frame).bottom for frame in mission.frames[frames]]
+
+
+def bottom_errors(cloud: PointCloud) -> FloatArray:
+    solid = cloud.select(np.isin(cloud.classification, BOTTOM))
+    return np.asarray(solid.position[:, 2] - solid.true_elevation)
+
+
+def share(cloud: PointCloud, *classes: PointClass) -> float:
+    return float(np.isin(cloud.classification, classes).mean())
+
+
+def test_measured_seabed_shows_beach_and_bottom() -> None:
+    _, (beach, bar, deep) = flown("measured-seabed", slice(0, 9, 4))
+    assert share(beach, PointClass.GROUND) > 0.5
+    assert share(bar, PointClass.BATHYMETRIC) > 0.95
+    assert share(deep, PointClass.BATHYMETRIC) > 0.9
+    for cloud in (bar, deep):
+        assert abs(bottom_errors(cloud).mean()) < 0.15
+        assert np.percentile(np.abs(bottom_errors(cloud)), 95.0) < 0.5
+    ground = beach.select(beach.classification == PointClass.GROUND)
+    assert np.median(np.abs(ground.position[:, 2] - ground.true_elevation)) < 0.05
+
+
+def test_sandbar_shows_crest_and_trough() -> None:
+    _, clouds = flown("sandbar", slice(0, 5), **{"flight.lines": 1})
+    cloud = stitched(clouds, cell_size=1.0)
+    assert share(clouds[0], PointClass.GROUND) > 0.2
+    solid = cloud.select(np.isin(cloud.classification, BOTTOM))
+    offshore = solid.position[:, 0] - 20.0
+    crest = solid.position[np.abs(offshore - 280.0) < 5.0, 2]
+    trough = solid.position[np.abs(offshore - 190.0) < 5.0, 2]
+    slope = np.tan(np.radians(0.7))
+    assert np.median(crest) == pytest.approx(1.5 - 280.0 * slope, abs=0.2)
+    assert np.median(trough) == pytest.approx(1.5 * np.exp(-4.5) - 190.0 * slope, abs=0.2)
+    assert np.percentile(np.abs(bottom_errors(cloud)), 95.0) < 0.5
+
+
+def edge_on_bed(place: float, tangent: float) -> tuple[float, float]:
+    """Where a ray ``tangent`` ahead of nadir at ``place`` meets the bed of turned-footprint."""
+    sine = tangent / np.hypot(1.0, tangent) / 1.3415
+    in_water, gradient = sine / np.sqrt(1.0 - sine**2), np.tan(np.radians(0.57))
+    surface = place + 200.0 * tangent
+    depth = (2.0 + gradient * surface) / (1.0 - gradient * in_water)
+    return surface + depth * in_water, depth
+
+
+def test_turned_footprint_leaves_gaps_as_wide_as_refraction_makes_them() -> None:
+    mission, clouds = flown("turned-footprint", slice(0, 8))
+    cloud = stitched(clouds, cell_size=1.0)
+    solid = cloud.select(cloud.classification == PointClass.BATHYMETRIC)
+    outer = 15.5 * 0.008
+    widths, depths = [], []
+    for ahead, behind in zip(clouds[1:], clouds, strict=False):
+        place = mission.frames[int(behind.frame[0])].pose.position[0]
+        start, depth = edge_on_bed(place, outer)
+        end, _ = edge_on_bed(place + 100.0, -outer)
+        first = middle_of_row(behind, 0)
+        last = middle_of_row(ahead, 31)
+        widths.append(last - first)
+        depths.append(depth)
+        assert (first, last) == pytest.approx((start, end), abs=0.1)
+        assert widths[-1] == pytest.approx(end - start, abs=0.15)
+        inside = (solid.position[:, 0] > first + 1.6) & (solid.position[:, 0] < last - 1.6)
+        assert not inside.any()
+    assert depths[-1] - depths[0] > 5.0
+    assert widths[0] - widths[-1] == pytest.approx(
+        2.0 * (depths[-1] - depths[0]) * outer / 1.3415, abs=0.2
+    )
+
+
+def middle_of_row(cloud: PointCloud, row: int) -> float:
+    chosen = (cloud.row == row) & (np.abs(cloud.column - 31.5) < 6.0)
+    chosen &= cloud.classification == PointClass.BATHYMETRIC
+    assert chosen.sum() > 8
+    return float(np.median(cloud.position[chosen, 0]))
+
+
+def test_wreck_stands_on_its_bed() -> None:
+    mission, (cloud,) = flown("wreck", slice(1, 2))
+    assert mission.seabed.is_object.any()
+    on_wreck = cloud.true_classification == PointClass.SUBMERGED_OBJECT
+    height = cloud.truth[:, 2] + 10.0
+    called = cloud.classification == PointClass.SUBMERGED_OBJECT
+    assert on_wreck.sum() > 60
+    assert (called & on_wreck).sum() > 30
+    assert called[on_wreck & (height > 2.0)].mean() > 0.6
+    beside = np.linalg.norm(cloud.position[:, :2] - [15.0, 100.0], axis=1) > 25.0
+    assert not called[beside].any()
+    assert np.percentile(np.abs(bottom_errors(cloud.select(beside))), 95.0) < 0.5
+    top = cloud.select(called & on_wreck)
+    assert np.median(top.position[:, 2]) > -8.5
+    assert np.median(np.abs(top.position[:, 2] - top.truth[:, 2])) < 0.6
+
+
+@pytest.mark.slow
+def test_too_deep_shows_nothing() -> None:
+    _, clouds = flown("too-deep", slice(0, 4))
+    assert share(PointCloud.concatenate(clouds), *BOTTOM) < 3e-3
