@@ -56,7 +56,7 @@ def run(
     scenario: Annotated[str, typer.Argument(help="A scenario file, or a name of the gallery.")],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="RUN", help="Run folder.")],
     workers: Annotated[
-        int | None, typer.Option(min=0, help="Processes; 0 is one for each core.")
+        int | None, typer.Option(min=0, help="Frames at once; 0 is one for each core.")
     ] = None,
     frames: Annotated[
         str | None, typer.Option(metavar="A:B", help="Only these frames, from 0, B excluded.")

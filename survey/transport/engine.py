@@ -147,13 +147,10 @@ class Engine:
         """
         optics = kernel_optics(camera=self.camera, receiver=self.receiver, pose=pose)
         scene = self._scene(pose, frame=frame)
-        address = Address(self.seed, frame)
-        forward = self._forward_walks(scene, optics, address)
-        backward = self._backward_walks(scene, optics, address)
-        mean, variance = self._estimate(self._joined(scene, forward, backward, address))
+        echoes, ledger = self._paired_walks(scene, optics, Address(self.seed, frame))
+        mean, variance = self._estimate(echoes)
         surface = self._surface_echo(scene, optics)[None]
         grid = (3, optics.rows, optics.columns, self.receiver.bins)
-        ledger = forward.ledger / self.settings.replicates
         return Waveforms(
             photo_electrons=np.concatenate([surface, mean]).reshape(grid),
             variance=np.concatenate([np.zeros_like(surface), variance]).reshape(grid),
@@ -161,6 +158,15 @@ class Engine:
             bin_width=self.receiver.bin_width,
             ledger=dict(zip(LEDGER_NAMES, ledger.tolist(), strict=True)),
         )
+
+    def _paired_walks(
+        self, scene: Scene, optics: Optics, address: Address
+    ) -> tuple[Echoes, FloatArray]:
+        """Walk from both ends and pair; return the echoes and the energy ledger of one pulse."""
+        forward = self._forward_walks(scene, optics, address)
+        backward = self._backward_walks(scene, optics, address)
+        echoes = self._joined(scene, forward, backward, address)
+        return echoes, forward.ledger / self.settings.replicates
 
     def _forward_walks(self, scene: Scene, optics: Optics, address: Address) -> Records:
         batches, stride = self.settings.replicates, self.settings.forward_column_stride

@@ -106,7 +106,8 @@ def join_on_patches(
             if isolated and forward.patch_owner[f] != pixel:
                 continue
             deposit_pair(
-                echoes, BOTTOM, pixel, bins, forward.patch_batch[f], backward.patch_batch[b],
+                echoes, BOTTOM, pixel, bins,
+                int(forward.patch_batch[f]), int(backward.patch_batch[b]),
                 forward.patch_time[f] + backward.patch_time[b],
                 importance * forward.patch_weight[f],
             )  # fmt: skip
@@ -114,18 +115,18 @@ def join_on_patches(
 
 @kernel
 def sorted_by_key(
-    cell: NDArray[np.int64], batch: NDArray[np.int32], cells: int, batches: int
+    cell: NDArray[np.int64], batch: NDArray[np.uint8], cells: int, batches: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return where each cell's and batch's crossings start, and the crossings in that order."""
     start = np.zeros(cells * batches + 1, np.int64)
     for i in range(cell.shape[0]):
-        start[cell[i] * batches + batch[i] + 1] += 1
+        start[cell[i] * batches + np.int64(batch[i]) + 1] += 1
     for key in range(cells * batches):
         start[key + 1] += start[key]
     order = np.empty(cell.shape[0], np.int64)
     filled = start[:-1].copy()
     for i in range(cell.shape[0]):
-        key = cell[i] * batches + batch[i]
+        key = cell[i] * batches + np.int64(batch[i])
         order[filled[key]] = i
         filled[key] += 1
     return start, order
@@ -189,7 +190,7 @@ def join_in_column(
                 continue
             deposit_pair(
                 echoes, BOTTOM if forward.cell_touched[f] else COLUMN, pixel, bins,
-                batch, backward.cell_batch[b],
+                batch, int(backward.cell_batch[b]),
                 forward.cell_time[f] + backward.cell_time[b],
                 factor * density * present * forward.cell_weight[f] * backward.cell_weight[b],
             )  # fmt: skip

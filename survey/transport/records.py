@@ -32,15 +32,15 @@ class Records(NamedTuple):
 
     patch: NDArray[np.int64]
     patch_owner: NDArray[np.int32]
-    patch_batch: NDArray[np.int32]
-    patch_time: NDArray[np.float64]
-    patch_weight: NDArray[np.float64]
-    patch_gain: NDArray[np.float64]
+    patch_batch: NDArray[np.uint8]
+    patch_time: NDArray[np.float32]
+    patch_weight: NDArray[np.float32]
+    patch_gain: NDArray[np.float32]
     cell: NDArray[np.int64]
     cell_owner: NDArray[np.int32]
-    cell_batch: NDArray[np.int32]
-    cell_time: NDArray[np.float64]
-    cell_weight: NDArray[np.float64]
+    cell_batch: NDArray[np.uint8]
+    cell_time: NDArray[np.float32]
+    cell_weight: NDArray[np.float32]
     cell_direction: NDArray[np.float32]
     cell_touched: NDArray[np.uint8]
     filled: NDArray[np.int64]
@@ -52,15 +52,15 @@ def empty_records(*, arrivals: int, crossings: int) -> Records:
     return Records(
         patch=np.empty(arrivals, np.int64),
         patch_owner=np.empty(arrivals, np.int32),
-        patch_batch=np.empty(arrivals, np.int32),
-        patch_time=np.empty(arrivals),
-        patch_weight=np.empty(arrivals),
-        patch_gain=np.empty(arrivals),
+        patch_batch=np.empty(arrivals, np.uint8),
+        patch_time=np.empty(arrivals, np.float32),
+        patch_weight=np.empty(arrivals, np.float32),
+        patch_gain=np.empty(arrivals, np.float32),
         cell=np.empty(crossings, np.int64),
         cell_owner=np.empty(crossings, np.int32),
-        cell_batch=np.empty(crossings, np.int32),
-        cell_time=np.empty(crossings),
-        cell_weight=np.empty(crossings),
+        cell_batch=np.empty(crossings, np.uint8),
+        cell_time=np.empty(crossings, np.float32),
+        cell_weight=np.empty(crossings, np.float32),
         cell_direction=np.empty((crossings, 3), np.float32),
         cell_touched=np.empty(crossings, np.uint8),
         filled=np.zeros(2, np.int64),

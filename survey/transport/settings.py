@@ -43,7 +43,7 @@ class TransportSettings:
     cell_size: float = 2.0
     illumination: Literal["flood", "isolated"] = "flood"
     forward_column_stride: int = 2
-    backward_column_stride: int = 8
+    backward_column_stride: int = 4
 
     @property
     def backward_walks_per_replicate(self) -> int:
