@@ -1,11 +1,10 @@
-"""Phase functions of scattering: density, cumulative, sampler table."""
+"""A phase function on a grid of angles: density, cumulative, sampler table."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from importlib import resources
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,11 +13,10 @@ FloatArray = NDArray[np.float64]
 
 SMALLEST_ANGLE = 1e-6
 SAMPLER_CELLS = 1 << 16
-PETZOLD_SLOPES = {"clear": -1.191, "coastal": -1.545, "harbor": -1.346}
-PETZOLD_COLUMNS = {"clear": 1, "coastal": 2, "harbor": 3}
 
 
-def _angle_grid() -> FloatArray:
+def angle_grid() -> FloatArray:
+    """Return the angles that every phase function is kept at, (12001,) [rad]."""
     peak = np.geomspace(SMALLEST_ANGLE, 0.1, 6000, endpoint=False)
     return np.concatenate([peak, np.linspace(0.1, np.pi, 6001)])
 
@@ -51,16 +49,27 @@ class PhaseFunction:
     def from_function(
         cls, *, name: str, function: Callable[[FloatArray], FloatArray], small_angle_slope: float
     ) -> PhaseFunction:
-        """Normalise any positive function of the angle [rad]."""
-        angle = _angle_grid()
+        """Normalise any positive function of the angle [rad].
+
+        Raises
+        ------
+        ValueError
+            When the function is not positive or has no finite integral.
+        """
+        angle = angle_grid()
         values = np.asarray(function(angle), dtype=np.float64)
+        if not small_angle_slope > -2.0:
+            raise ValueError(f"{name}: small_angle_slope = {small_angle_slope:g}: must be above -2")
         shape = cls(
             name=name, angle=angle, density_on_grid=values, small_angle_slope=small_angle_slope
         )
+        whole = shape.cumulative_on_grid[-1]
+        if not (np.all(values > 0.0) and np.isfinite(whole)):
+            raise ValueError(f"{name}: must be positive everywhere and have a finite integral")
         return cls(
             name=name,
             angle=angle,
-            density_on_grid=values / shape.cumulative_on_grid[-1],
+            density_on_grid=values / whole,
             small_angle_slope=small_angle_slope,
         )
 
@@ -88,7 +97,8 @@ class PhaseFunction:
 
     def fraction_within(self, angle: float) -> float:
         """Return the share of scattering into angles up to ``angle`` [rad]."""
-        return float(np.interp(angle, self.angle, self.cumulative_on_grid))
+        core = min(angle / self.angle[0], 1.0) ** (2.0 + self.small_angle_slope)
+        return float(core * np.interp(angle, self.angle, self.cumulative_on_grid))
 
     @property
     def mean_cosine(self) -> float:
@@ -120,70 +130,3 @@ class PhaseFunction:
     def cosine_table(self, *, entries: int = 8193) -> FloatArray:
         """Return the density at evenly spaced cosines from -1 to 1 [1/sr], for wide angles."""
         return self.density(np.arccos(np.linspace(-1.0, 1.0, entries)))
-
-
-def henyey_greenstein(asymmetry: float) -> PhaseFunction:
-    """Henyey and Greenstein (1941): (1 - g^2) / [4 pi (1 + g^2 - 2 g cos)^(3/2)].
-
-    For benchmarks only: with the g of sea water it has 1-2 % of the forward peak.
-
-    Examples
-    --------
-    >>> round(henyey_greenstein(0.75).mean_cosine, 5)
-    0.75
-    """
-
-    def shape(angle: FloatArray) -> FloatArray:
-        g = asymmetry
-        density: FloatArray = (1 - g * g) / (4 * np.pi * (1 + g * g - 2 * g * np.cos(angle)) ** 1.5)
-        return density
-
-    return PhaseFunction.from_function(
-        name=f"Henyey-Greenstein g = {asymmetry}", function=shape, small_angle_slope=0.0
-    )
-
-
-def petzold(water: str) -> PhaseFunction:
-    """Petzold's measured functions (SIO Ref. 72-78, 1972), log-log between the tabled angles.
-
-    Parameters
-    ----------
-    water : {"clear", "coastal", "harbor"}
-        AUTEC 8, HAOCE 11 or NUC 2040; below 0.1 degrees the report's power law.
-
-    Examples
-    --------
-    >>> round(petzold("coastal").mean_cosine, 3), round(petzold("harbor").mean_cosine, 3)
-    (0.947, 0.92)
-    """
-    angle, values = _petzold_table(water)
-    slope = PETZOLD_SLOPES[water]
-
-    def shape(theta: FloatArray) -> FloatArray:
-        tabled = np.exp(np.interp(np.log(theta), np.log(angle), np.log(values)))
-        below = theta < angle[0]
-        tabled[below] = values[0] * (theta[below] / angle[0]) ** slope
-        return np.asarray(tabled)
-
-    return PhaseFunction.from_function(
-        name=f"Petzold {water}", function=shape, small_angle_slope=slope
-    )
-
-
-def petzold_scattering(water: str) -> float:
-    """Return the scattering coefficient that the table integrates to [1/m].
-
-    Examples
-    --------
-    >>> [round(petzold_scattering(water), 4) for water in ("clear", "coastal", "harbor")]
-    [0.0372, 0.2188, 1.8209]
-    """
-    angle, values = _petzold_table(water)
-    return float(values[-1] / petzold(water).density(angle[-1]))
-
-
-def _petzold_table(water: str) -> tuple[FloatArray, FloatArray]:
-    source = resources.files("survey.optics") / "data" / "petzold_vsf.csv"
-    with source.open() as file:
-        table = np.loadtxt(file, delimiter=",", skiprows=1)
-    return np.radians(table[:, 0]), table[:, PETZOLD_COLUMNS[water]]
