@@ -1,9 +1,10 @@
 """The fast engine: one flash, from the laser to expected photo-electrons in every pixel.
 
-Each path of light is split at its last turn (a bottom reflection, or a scattering by more than
-the split angle). Up to it a forward walk of every order runs from the laser; after it a walk runs
-backward from the pixel, scattering by no more than the split angle; the two are paired where they
-meet. Paths without any turn are left out: below 1e-4 of the light at 30 degrees.
+Forward walks of every order run from the laser, backward walks from the pixels, and the two are
+paired where they meet. Light that has touched the bottom is split at its last touch, so that both
+walks may scatter at will. Light of the column is split at its last scattering by more than the
+split angle; the walks after it scatter by no more than that angle. Paths of the column without any
+such turn are left out: below 1e-4 of the light at 30 degrees.
 """
 
 from __future__ import annotations
@@ -23,11 +24,12 @@ from survey.sensor.receiver import Receiver
 from survey.transport.glint import add_glint, add_mirror
 from survey.transport.join import Echoes, join_in_column, join_on_patches
 from survey.transport.launch import Address, Optics, launch_backward, launch_forward
-from survey.transport.random import SURFACE, chance
+from survey.transport.random import BACKWARD, RESTRICTED, SURFACE, chance
 from survey.transport.records import LEDGER_NAMES, Records, empty_records, overflowed, trimmed
 from survey.transport.scene import (
     Bounds,
     Layers,
+    Medium,
     Scene,
     forward_medium,
     kernel_sea,
@@ -51,6 +53,7 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 COARSE_SHARE = 0.4
+LAYER_OPTICAL = 0.2
 
 
 def kernel_optics(*, camera: Camera, receiver: Receiver, pose: Pose) -> Optics:
@@ -77,7 +80,7 @@ def _until_it_fits(launch: Callable[[Records], None], *, arrivals: int, crossing
             return trimmed(records)
         arrivals, crossings = (
             max(room, int(1.1 * needed))
-            for room, needed in zip((arrivals, crossings), records.filled, strict=True)
+            for room, needed in zip((arrivals, crossings), records.filled[:2], strict=True)
         )
 
 
@@ -132,6 +135,9 @@ class Engine:
             bins=receiver.bins,
             sigma=laser.pulse_sigma,
         )
+        self._thickness = min(
+            settings.layer_thickness, LAYER_OPTICAL / max(water.attenuation, 1e-9)
+        )
         self._coarse = max(1, int(laser.pulse_fwhm * COARSE_SHARE / receiver.bin_width))
         self._taps = pulse_taps(sigma=laser.pulse_sigma, width=receiver.bin_width, pad=pad)
 
@@ -164,9 +170,23 @@ class Engine:
     ) -> tuple[Echoes, FloatArray]:
         """Walk from both ends and pair; return the echoes and the energy ledger of one pulse."""
         forward = self._forward_walks(scene, optics, address)
-        backward = self._backward_walks(scene, optics, address)
-        echoes = self._joined(scene, forward, backward, address)
-        return echoes, forward.ledger / self.settings.replicates
+        settings, pixels = self.settings, optics.rows * optics.columns
+        seeing = self._backward_walks(
+            scene, self._forward, optics, address, BACKWARD, settings.backward_walks_per_replicate
+        )
+        restricted = self._backward_walks(
+            scene, self._backward, optics, address, RESTRICTED, settings.column_walks_per_replicate
+        )
+        echoes = self._empty_echoes(pixels)
+        self._join_bottom(echoes, forward, seeing)
+        self._join_column(echoes, scene, forward, restricted, address)
+        return echoes, forward.ledger / settings.replicates
+
+    def walk_forward(self, *, pose: Pose, frame: int) -> Records:
+        """Return what the forward walks of a flash leave behind, for measuring their speed."""
+        optics = kernel_optics(camera=self.camera, receiver=self.receiver, pose=pose)
+        scene = self._scene(pose, frame=frame)
+        return self._forward_walks(scene, optics, Address(self.seed, frame))
 
     def _forward_walks(self, scene: Scene, optics: Optics, address: Address) -> Records:
         batches, stride = self.settings.replicates, self.settings.forward_column_stride
@@ -186,46 +206,50 @@ class Engine:
         crossings = 2 * walks // stride * scene.layers.planes
         return _until_it_fits(launch, arrivals=2 * walks, crossings=crossings)
 
-    def _backward_walks(self, scene: Scene, optics: Optics, address: Address) -> Records:
-        walks, stride = (
-            self.settings.backward_walks_per_replicate,
-            self.settings.backward_column_stride,
-        )
-        batches = self.settings.replicates
+    def _backward_walks(
+        self,
+        scene: Scene,
+        medium: Medium,
+        optics: Optics,
+        address: Address,
+        purpose: int,
+        walks: int,
+    ) -> Records:
+        """Walk from every pixel: to the bottom in full, or restricted through the column."""
+        batches, column = self.settings.replicates, purpose == RESTRICTED
 
         def launch(records: Records) -> None:
             for batch in range(batches):
                 launch_backward(
-                    scene, self._backward, optics, records, address, batch, walks, stride
+                    scene, medium, optics, records, address, purpose, batch, walks, float(column)
                 )
 
         launched = batches * walks * optics.rows * optics.columns
-        return _until_it_fits(
-            launch, arrivals=launched, crossings=2 * launched // stride * scene.layers.planes
-        )
+        crossings = 2 * launched * scene.layers.planes if column else 0
+        return _until_it_fits(launch, arrivals=launched, crossings=crossings)
 
-    def _joined(
-        self, scene: Scene, forward: Records, backward: Records, address: Address
-    ) -> Echoes:
-        echoes = self._empty_echoes()
+    def _join_bottom(self, echoes: Echoes, forward: Records, backward: Records) -> None:
         isolated = self.settings.illumination == "isolated"
         order = np.argsort(forward.patch, kind="stable")
         patches = forward.patch[order]
         first = np.searchsorted(patches, backward.patch, side="left")
         last = np.searchsorted(patches, backward.patch, side="right")
         join_on_patches(echoes, self._bins, forward, order, first, last, backward, isolated)
+
+    def _join_column(
+        self, echoes: Echoes, scene: Scene, forward: Records, backward: Records, address: Address
+    ) -> None:
         layers = scene.layers
         join_in_column(
             echoes, self._bins, forward, backward,
             layers.planes * layers.across * layers.along,
             self._cosines, np.cos(self.settings.split_angle),
             self.water.scattering * layers.thickness / layers.cell**2,
-            isolated, *address,
+            self.settings.illumination == "isolated", *address,
         )  # fmt: skip
-        return echoes
 
-    def _empty_echoes(self) -> Echoes:
-        pixels, batches = self.camera.rows * self.camera.columns, self.settings.replicates
+    def _empty_echoes(self, pixels: int) -> Echoes:
+        batches = self.settings.replicates
         return Echoes(
             mean=np.zeros((2, pixels, self._bins.number), np.float32),
             batches=np.zeros(
@@ -281,7 +305,7 @@ class Engine:
         return max(0.0, min(in_gate, self.surface.level - self._grid.z_low))
 
     def _layers(self, bounds: Bounds) -> Layers:
-        thickness, cell = self.settings.layer_thickness, self.settings.cell_size
+        thickness, cell = self._thickness, self.settings.cell_size
         return Layers(
             top=self.surface.level - 0.5 * thickness,
             thickness=thickness,

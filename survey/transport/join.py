@@ -1,5 +1,7 @@
-"""Joining forward and backward walks at the last turn of the light's path.
+"""Joining forward and backward walks where the light's path is split.
 
+Light that has touched the bottom is split at its last touch: walks of every order meet there on
+the same patch. Light of the column is split at its last scattering by more than the split angle.
 Every forward batch is paired with every backward batch. The sum over all pairs goes into the fine
 bins of the waveform; what the batches say apart, from which the error is told, into coarse ones.
 """
@@ -168,8 +170,7 @@ def join_in_column(
     """Pair crossings of the same cell of a plane: a scattering by more than the split angle.
 
     ``factor`` is scattering coefficient x layer thickness / cell area. Of each forward batch one
-    crossing of the cell is drawn and stands for all of them. Light that has touched the bottom
-    before counts as bottom.
+    crossing of the cell is drawn and stands for all of them. No walk has touched the bottom.
     """
     batches = echoes.batches.shape[1]
     start, order = sorted_by_key(forward.cell, forward.cell_batch, cells, batches)
@@ -189,7 +190,7 @@ def join_in_column(
             if density == 0.0:
                 continue
             deposit_pair(
-                echoes, BOTTOM if forward.cell_touched[f] else COLUMN, pixel, bins,
+                echoes, COLUMN, pixel, bins,
                 batch, int(backward.cell_batch[b]),
                 forward.cell_time[f] + backward.cell_time[b],
                 factor * density * present * forward.cell_weight[f] * backward.cell_weight[b],

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.constants import speed_of_light
 
-from survey.transport.random import BACKWARD, FORWARD, start_stream, uniform
+from survey.transport.random import FORWARD, start_stream, uniform
 from survey.transport.records import ESCAPED, FACETS, LAUNCHED, REFLECTED, Records
 from survey.transport.scene import Medium, Scene
 from survey.transport.surface import enter_water
@@ -179,52 +179,46 @@ def launch_backward(
     optics: Optics,
     records: Records,
     address: Address,
+    purpose: int,
     batch: int,
     walks: int,
-    column_stride: int,
+    in_column: float,
 ) -> None:
     """Launch so many walks from every pixel; their weights sum to the pixel's etendue [m2 sr].
 
     The etendue of a direction is aperture area x cos^4 (to boresight) x tangent-plane area.
     Directions within the pixel and first paths follow a three-dimensional low-discrepancy
-    sequence, shifted at random for each pixel; places in the aperture are random.
+    sequence, shifted at random for each pixel; places in the aperture are random. ``in_column``
+    is 1 where crossings of the column's planes are noted, else 0.
     """
     state = np.empty(2, np.uint64)
     pixels = optics.rows * optics.columns
     area = math.pi * optics.aperture_radius**2
     solid = 4.0 * optics.half_forward * optics.half_right / pixels
     gain = 1.0 / (medium.refractive_index * medium.refractive_index)
-    in_column_walks = (walks + column_stride - 1) // column_stride
     t = optics.turn
     for pixel in range(pixels):
-        start_stream(state, address.seed, BACKWARD, address.frame, batch, pixel)
+        start_stream(state, address.seed, purpose, address.frame, batch, pixel)
         shift_1, shift_2, shift_3 = uniform(state), uniform(state), uniform(state)
         row, column = pixel // optics.columns, pixel % optics.columns
         for i in range(walks):
-            start_stream(
-                state,
-                address.seed,
-                BACKWARD,
-                address.frame,
-                batch,
-                pixels + pixel * walks + i,
-            )
-            in_row = (row + fraction(shift_1 + i * PLASTIC_1)) / optics.rows * 2.0 - 1.0
-            in_column = (column + fraction(shift_2 + i * PLASTIC_2)) / optics.columns * 2.0 - 1.0
+            number = pixels + pixel * walks + i
+            start_stream(state, address.seed, purpose, address.frame, batch, number)
+            in_rows = (row + fraction(shift_1 + i * PLASTIC_1)) / optics.rows * 2.0 - 1.0
+            in_columns = (column + fraction(shift_2 + i * PLASTIC_2)) / optics.columns * 2.0 - 1.0
             if optics.columns_forward:
-                forward, right = -in_column * optics.half_forward, in_row * optics.half_right
+                forward, right = -in_columns * optics.half_forward, in_rows * optics.half_right
             else:
-                forward, right = -in_row * optics.half_forward, in_column * optics.half_right
+                forward, right = -in_rows * optics.half_forward, in_columns * optics.half_right
             dx, dy, dz, cosine = direction_of(optics, forward, right)
             radius = optics.aperture_radius * math.sqrt(uniform(state))
             angle = 2.0 * math.pi * uniform(state)
             ahead, aside = radius * math.cos(angle), radius * math.sin(angle)
-            column_share = walks / in_column_walks if i % column_stride == 0 else 0.0
             fly_down(
                 scene, medium, records, state, pixel, batch,
                 optics.position[0] + t[0, 0] * ahead + t[0, 1] * aside,
                 optics.position[1] + t[1, 0] * ahead + t[1, 1] * aside,
                 optics.position[2] + t[2, 0] * ahead + t[2, 1] * aside,
                 dx, dy, dz, area * solid * cosine**4 / walks, gain,
-                -math.log(1.0 - fraction(shift_3 + i * PLASTIC_3)), column_share, False,
+                -math.log(1.0 - fraction(shift_3 + i * PLASTIC_3)), in_column, False,
             )  # fmt: skip

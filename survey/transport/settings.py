@@ -16,22 +16,25 @@ class TransportSettings:
     forward_walks_per_m2 : float
         Walks from the laser per square metre of lit sea surface, all replicates together [1/m2].
     backward_walks_per_pixel : int
-        Walks from each pixel, all replicates together.
+        Walks from each pixel to the bottom, all replicates together.
     replicates : int
         Batches of each kind of walk, whose scatter gives the standard error, at least 3.
     split_angle : float
-        A scattering by more than this is a turn, at which the two walks meet [rad].
+        A scattering in the column by more than this is a turn, where two walks meet [rad].
     patch_size : float
         Longest edge of the bottom patches on which arrivals are paired [m]; a patch is a triangle
         of about half its square.
     layer_thickness : float
-        Spacing of the planes on which the water column is paired [m].
+        Widest spacing of the planes on which the water column is paired [m]; it is no wider than
+        a fifth of the water's attenuation length, within which light decays evenly.
     cell_size : float
         Side of the cells of such a plane [m].
     illumination : {"flood", "isolated"}
         Whether a pixel sees the light launched into every cone or into its own alone.
-    forward_column_stride, backward_column_stride : int
-        One walk in this many of either kind takes part in the water column.
+    forward_column_walks_per_m2 : float
+        About how many of the forward walks take part in the water column [1/m2].
+    column_walks_per_pixel : int
+        Walks from each pixel through the water column, all replicates together.
     """
 
     forward_walks_per_m2: float = 16.0
@@ -42,10 +45,20 @@ class TransportSettings:
     layer_thickness: float = 0.5
     cell_size: float = 2.0
     illumination: Literal["flood", "isolated"] = "flood"
-    forward_column_stride: int = 2
-    backward_column_stride: int = 4
+    forward_column_walks_per_m2: float = 8.0
+    column_walks_per_pixel: int = 8
 
     @property
     def backward_walks_per_replicate(self) -> int:
         """Walks from each pixel in one replicate."""
         return max(1, self.backward_walks_per_pixel // self.replicates)
+
+    @property
+    def forward_column_stride(self) -> int:
+        """One forward walk in this many takes part in the water column."""
+        return max(1, round(self.forward_walks_per_m2 / self.forward_column_walks_per_m2))
+
+    @property
+    def column_walks_per_replicate(self) -> int:
+        """Walks from each pixel through the column in one replicate."""
+        return max(1, self.column_walks_per_pixel // self.replicates)

@@ -110,11 +110,11 @@ def walk_in_water(
 
     It flies to the nearest of scattering, surface, bottom and time limit, then does what happens
     there. The slownesses are those of the launch eastwards and northwards [s/m], ``first_path``
-    is the first optical path, ``in_column`` the factor with which crossings
-    of the column's planes count (0: they do not), ``bounces`` whether it goes on from the bottom.
+    is the first optical path, ``in_column`` the factor with which crossings of the column's planes
+    count (0: they do not; after the bottom none does), ``bounces`` whether it may go on from the
+    bottom: with the bottom's reflectance as its chance.
     """
     roulette_below = ROULETTE_BELOW * weight
-    touched = False
     path = first_path
     ledger = records.ledger
     while True:
@@ -127,7 +127,7 @@ def walk_in_water(
             length = to_bottom
         if in_column > 0.0:
             record_crossings(
-                scene.layers, records, owner, batch, touched, x, y, z, dx, dy, dz, length,
+                scene.layers, records, owner, batch, x, y, z, dx, dy, dz, length,
                 weight * in_column, medium.attenuation, time, medium.speed, east_slowness,
                 north_slowness,
             )  # fmt: skip
@@ -145,14 +145,13 @@ def walk_in_water(
                 scene, records, owner, batch, face, x, y, z, dz, weight, time, medium.speed,
                 east_slowness, north_slowness,
             )  # fmt: skip
-            if not bounces:
+            if not bounces or uniform(state) >= scene.reflectance[face]:
+                ledger[SEABED] += weight
                 return
-            ledger[SEABED] += weight * (1.0 - scene.reflectance[face])
-            weight *= scene.reflectance[face]
             nx, ny, nz = facing_normal(scene, face, dx, dy, dz)
             dx, dy, dz = lambert_direction(nx, ny, nz, state)
             x, y, z = x + nx * LIFT, y + ny * LIFT, z + nz * LIFT
-            touched = True
+            in_column = 0.0
         elif length == to_limit:
             ledger[LATE] += weight
             return
@@ -166,6 +165,7 @@ def walk_in_water(
                 return
             dx, dy, dz = rx, ry, rz
         else:
+            records.filled[2] += 1
             azimuth = 2.0 * math.pi * uniform(state)
             dx, dy, dz = turned(
                 dx, dy, dz, drawn(medium.sampler, medium.sampler_share, state), azimuth

@@ -30,6 +30,7 @@ def make_engine(
     absorption: float | None = None,
     scattering: float | None = None,
     index: float = 1.33,
+    group_index: float | None = None,
     wind_speed: float = 5.0,
     pulse_fwhm: float = 10e-9,
     pulse_energy: float = 1.0,
@@ -58,7 +59,7 @@ def make_engine(
         water=petzold_water(
             water,
             refractive_index=index,
-            group_index=index,
+            group_index=index if group_index is None else group_index,
             absorption=absorption,
             scattering=scattering,
         ),
