@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.constants import speed_of_light
 
 from survey.optics.interface import fresnel_reflectance, refracted
 from survey.optics.phase import PhaseFunction
@@ -31,8 +32,11 @@ class SlabResult:
         Shares of the incident light [1]; the mirror reflection of the top is part of the first.
     reflectance_error, transmittance_error : float
         Standard errors from independent batches [1].
-    time_resolved : array (bins,)
-        Reflectance by optical path length inside, in bins of ``path_bin`` mean free paths [1].
+    time_resolved, time_resolved_error : array (bins,)
+        R(t): the reflectance by path length inside, in bins of ``path_bin`` mean free paths, the
+        mirror reflection in the first and all that comes late in the last, and its errors [1].
+    path_bin : float
+        Width of a bin [mean free paths].
     """
 
     reflectance: float
@@ -40,7 +44,22 @@ class SlabResult:
     transmittance: float
     transmittance_error: float
     time_resolved: FloatArray
+    time_resolved_error: FloatArray
     path_bin: float
+
+    def arrival_times(self, *, attenuation: float, group_index: float) -> FloatArray:
+        """Return the edges of the bins of R(t) after the light went in, (bins + 1,) [s].
+
+        Parameters
+        ----------
+        attenuation : float
+            Beam attenuation c inside, inverse of the mean free path [1/m].
+        group_index : float
+            Light travels at the vacuum's speed over this [1].
+        """
+        edges = self.path_bin * np.arange(len(self.time_resolved) + 1.0)
+        edges[-1] = np.inf
+        return np.asarray(edges * group_index / (attenuation * speed_of_light))
 
 
 @leaf_kernel
@@ -147,7 +166,7 @@ def slab(
     Raises
     ------
     ValueError
-        When albedo or reflectance lie outside 0 to 1 or the thickness is not positive.
+        When an argument lies outside its range, all of them named at once.
 
     Examples
     --------
@@ -165,6 +184,12 @@ def slab(
             (not 0.0 <= bottom_reflectance <= 1.0, "bottom_reflectance must lie in 0 to 1"),
             (not 0.0 < cos_incidence <= 1.0, "cos_incidence must lie in 0 to 1, 0 excluded"),
             (not index >= 1.0, "index must be at least 1"),
+            (
+                albedo == 1.0 and math.isinf(optical_thickness),
+                "albedo must be below 1 where the thickness has no end",
+            ),
+            (not path_bin > 0.0 or path_bins < 1, "path_bin and path_bins must be above 0"),
+            (batches < 2 or walks < batches, "batches must be 2 or more and walks no fewer"),
         )
         if bad
     ]
@@ -186,5 +211,6 @@ def slab(
         transmittance=float(mean[1]),
         transmittance_error=float(error[1]),
         time_resolved=mean[2:],
+        time_resolved_error=error[2:],
         path_bin=path_bin,
     )
