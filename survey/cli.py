@@ -6,7 +6,7 @@ import os
 import sys
 import traceback
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import typer
 from typer.core import TyperGroup
@@ -131,6 +131,61 @@ def view(
         draw(folder, screenshot)
     except (ValueError, RuntimeError) as fault:
         raise UserError(str(fault)) from fault
+
+
+@app.command()
+def response(
+    water: Annotated[
+        str | None, typer.Option(metavar="NAME", help="clear, coastal or harbor.")
+    ] = None,
+    a: Annotated[float | None, typer.Option("--a", help="Absorption [1/m].")] = None,
+    b: Annotated[float | None, typer.Option("--b", help="Scattering [1/m].")] = None,
+    phase_function: Annotated[
+        Path | None, typer.Option(metavar="CSV", help="Table angle_deg,value.")
+    ] = None,
+    illumination: Annotated[
+        Literal["flood", "isolated"], typer.Option(help="Who lights a pixel.")
+    ] = "flood",
+    bottom_depth: Annotated[float, typer.Option(metavar="M", help="Depth [m].")] = 20.0,
+    seed: Annotated[int, typer.Option(min=0)] = 1,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, not a table.")] = False,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="PNG or SVG.")] = None,
+) -> None:
+    """Compute what one uniform water column sends back: column and bottom, with errors."""
+    import json
+
+    from survey import response_report as report
+
+    chosen = report.water_of(name=water, absorption=a, scattering=b, phase_function=phase_function)
+    from survey.transport.response import response as compute
+
+    found = compute(water=chosen, illumination=illumination, bottom_depth=bottom_depth, seed=seed)
+    if plot is not None:
+        title = f"{chosen.phase_function.name}, {illumination}: "
+        title += f"a = {chosen.absorption:g}, b = {chosen.scattering:g} 1/m"
+        report.draw(plot, found, title=title)
+    typer.echo(json.dumps(report.as_json(found), indent=1) if as_json else report.as_text(found))
+
+
+@app.command()
+def bench(
+    threads: Annotated[int, typer.Option(min=0, help="0 is one for each core.")] = 0,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, not a table.")] = False,
+) -> None:
+    """Measure speed at a measured error, on four waters."""
+    import json
+
+    from survey import bench as benchmark
+
+    cases = {}
+    for name, figures in benchmark.bench(threads=threads):
+        cases[name] = figures
+        if not as_json:
+            typer.echo(
+                f"{name:14}" + "".join(f"  {key} {value:.4g}" for key, value in figures.items())
+            )
+    if as_json:
+        typer.echo(json.dumps({"cases": cases} | benchmark.machine(threads=threads), indent=1))
 
 
 @app.command()

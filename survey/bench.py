@@ -1,0 +1,169 @@
+"""How fast the engine is, at an error that is measured from repeated flashes."""
+
+from __future__ import annotations
+
+import os
+import platform
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from survey.flight.pose import Frame
+from survey.mission import fly_frame
+from survey.preparation import Mission, prepare
+from survey.products.frame_file import frame_bytes
+from survey.scenario.scenario import Scenario
+
+FLASHES = 8
+GATE_BINS = 10
+TARGET_ERROR = 0.05
+SPACING_M = 1.23  # of a mesh that then has 100,000 triangles
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """A water, a depth, and the work that gives about 5 % error a pixel."""
+
+    water: str
+    depth_m: float
+    forward_walks_per_m2: float
+    backward_walks_per_pixel: int
+
+
+CASES = {
+    "clear 20 m": Case(
+        water="clear", depth_m=20.0, forward_walks_per_m2=64.0, backward_walks_per_pixel=40
+    ),
+    "coastal 10 m": Case(
+        water="coastal", depth_m=10.0, forward_walks_per_m2=64.0, backward_walks_per_pixel=32
+    ),
+    "coastal 20 m": Case(
+        water="coastal", depth_m=20.0, forward_walks_per_m2=64.0, backward_walks_per_pixel=96
+    ),
+    "harbor 4 m": Case(
+        water="harbor", depth_m=4.0, forward_walks_per_m2=128.0, backward_walks_per_pixel=128
+    ),
+}
+
+
+def bench(*, threads: int = 0) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Measure the cases one after the other; yields name and figures.
+
+    Figures of a case: ``seconds_per_frame`` of all threads together; ``error``, the standard
+    deviation of eight flashes over their mean in the 10 ns around the bottom's peak, root mean
+    square over all pixels; ``frames_per_second_at_5_percent``, the rate times (5 % / error)^2;
+    ``frames_per_second_end_to_end`` with detection, ranging and the frame's file, at the measured
+    error; ``ns_per_scattering`` of one thread, all of a forward walk shared out over its
+    scatterings.
+
+    Parameters
+    ----------
+    threads : int
+        Flashes at once; 0 is one for each core.
+    """
+    workers = threads or os.cpu_count() or 1
+    for name, case in CASES.items():
+        yield name, _measured(prepare(_scenario(case)), workers)
+
+
+def machine(*, threads: int = 0) -> dict[str, Any]:
+    """Return what the figures were measured on."""
+    libraries = ("bathyflash", "numpy", "numba")
+    return {
+        "machine": platform.machine(),
+        "system": platform.platform(),
+        "threads": threads or os.cpu_count() or 1,
+        "versions": {"python": sys.version.split()[0]}
+        | {library: metadata.version(library) for library in libraries},
+    }
+
+
+def _measured(mission: Mission, workers: int) -> dict[str, Any]:
+    engine, pose = mission.engine, mission.frames[0].pose
+    frames = [
+        Frame(index=number, line=0, time=float(number), pose=pose) for number in range(FLASHES)
+    ]
+
+    def flash(frame: Frame) -> Any:
+        return engine.flash(pose=pose, frame=frame.index).origin("bottom").astype(np.float32)
+
+    flash(frames[0])
+    seconds, echoes = _timed(flash, frames, workers)
+    frame_bytes(fly_frame(mission, frames[0]))
+    whole_seconds, _ = _timed(lambda frame: frame_bytes(fly_frame(mission, frame)), frames, workers)
+    error = _gate_error(np.stack(echoes))
+    return {
+        "seconds_per_frame": seconds,
+        "error": error,
+        "frames_per_second_at_5_percent": (TARGET_ERROR / error) ** 2 / seconds,
+        "frames_per_second_end_to_end": 1.0 / whole_seconds,
+        "ns_per_scattering": _nanoseconds_per_scattering(mission),
+    }
+
+
+def _timed(
+    work: Callable[[Frame], Any], frames: list[Frame], workers: int
+) -> tuple[float, list[Any]]:
+    start = time.perf_counter()
+    with ThreadPoolExecutor(workers) as pool:
+        results = list(pool.map(work, frames))
+    return (time.perf_counter() - start) / len(frames), results
+
+
+def _gate_error(echoes: Any) -> float:
+    """Return the relative error in the 10 ns around each pixel's peak, root mean square."""
+    peak = echoes.mean(axis=0).argmax(axis=-1)[..., None]
+    gate = np.clip(peak + np.arange(GATE_BINS) - GATE_BINS // 2, 0, echoes.shape[-1] - 1)
+    counts = np.take_along_axis(echoes, gate[None], axis=-1).sum(axis=-1)
+    relative = counts.std(axis=0, ddof=1) / counts.mean(axis=0)
+    return float(np.sqrt(np.mean(relative**2)))
+
+
+def _nanoseconds_per_scattering(mission: Mission) -> float:
+    pose = mission.frames[0].pose
+    start = time.perf_counter()
+    records = mission.engine.walk_forward(pose=pose, frame=0)
+    return 1e9 * (time.perf_counter() - start) / float(records.filled[2])
+
+
+def _scenario(case: Case) -> Scenario:
+    """Return a level sea bed of 100,000 triangles under one flash by day.
+
+    A micrometre of roughness makes the generator mesh it.
+    """
+    tables = {
+        "mission": {"title": "bench"},
+        "flight": {
+            "start_easting_m": 500000.0,
+            "start_northing_m": 6000000.0,
+            "heading_deg": 0.0,
+            "frames_per_line": 1,
+        },
+        "receiver": {"source": "assumed", "aperture_radius_m": 0.005, "filter_width_nm": 1.0},
+        "detector": {
+            "source": "assumed",
+            "quantum_efficiency": 0.2,
+            "dark_count_rate_hz": 1.0e4,
+        },
+        "water": {"type": case.water},
+        "surface": {"water_level_m": 0.0},
+        "seabed": {
+            "kind": "plane",
+            "depth_m": case.depth_m,
+            "spacing_m": SPACING_M,
+            "roughness_rms_m": 1e-6,
+        },
+        "transport": {
+            "forward_walks_per_m2": case.forward_walks_per_m2,
+            "backward_walks_per_pixel": case.backward_walks_per_pixel,
+        },
+    }
+    return Scenario.from_tables(tables, name="bench", folder=Path(tempfile.gettempdir()))

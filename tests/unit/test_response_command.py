@@ -1,0 +1,63 @@
+"""The command `response`."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+from survey.cli import app
+
+RUN = CliRunner()
+HARBOR = ["response", "--water", "harbor", "--illumination", "isolated", "--json"]
+HARBOR += ["--bottom-depth", "2"]
+OWN_WATER = ["response", "--a", "0.5", "--b", "0.5", "--bottom-depth", "1", "--phase-function"]
+
+
+def test_json_has_column_and_bottom(tmp_path):
+    plot = tmp_path / "response.png"
+    done = RUN.invoke(
+        app,
+        [*HARBOR, "--plot", str(plot)],
+    )
+    assert done.exit_code == 0
+    found = json.loads(done.stdout)
+    first, bottom = found["column"][0], found["bottom"]
+    assert (first["from_m"], first["to_m"]) == (0.0, 0.5)
+    assert 0.0 < first["sem"] < 0.02 * first["per_m_sr"]
+    assert bottom["depth_m"] == 2.0
+    assert 0.0 < bottom["two_way_10ns"] <= bottom["two_way"] < 1.0
+    assert plot.read_bytes().startswith(b"\x89PNG")
+
+
+def test_own_water_as_a_table(tmp_path):
+    table = tmp_path / "even.csv"
+    table.write_text("angle_deg,value\n1,1\n90,1\n180,1\n")
+    done = RUN.invoke(
+        app,
+        [*OWN_WATER, str(table)],
+    )
+    assert done.exit_code == 0
+    assert "two-way transmission" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--water", "coastel"], "is none of clear, coastal, harbor"),
+        (["--a", "0.1", "--b", "0.2"], "go together"),
+        ([], "give either --water or --a"),
+        (["--water", "coastal", "--illumination", "sun"], "'flood', 'isolated'"),
+        (["--water", "coastal", "--bottom-depth", "0"], "must be above 0"),
+        (["--water", "coastal", "--plot", "x.bmp"], ".png or .svg"),
+        (["--a", "-1", "--b", "0", "--phase-function", "x.csv"], "--b 0: must be above 0"),
+        (["--a", "1", "--b", "1", "--phase-function", "none.csv"], "none.csv"),
+    ],
+)
+def test_bad_input_is_one_line_without_traceback(options, message, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = RUN.invoke(app, ["response", *options])
+    assert done.exit_code in (2, 3)
+    assert message in done.stderr
+    assert "Traceback" not in done.stderr
