@@ -111,8 +111,8 @@ def walk_in_water(
     It flies to the nearest of scattering, surface, bottom and time limit, then does what happens
     there. The slownesses are those of the launch eastwards and northwards [s/m], ``first_path``
     is the first optical path, ``in_column`` the factor with which crossings of the column's planes
-    count (0: they do not; after the bottom none does), ``bounces`` whether it may go on from the
-    bottom: with the bottom's reflectance as its chance.
+    count (0: they do not; after the bottom none does), ``bounces`` whether it goes on from the
+    bottom.
     """
     roulette_below = ROULETTE_BELOW * weight
     path = first_path
@@ -145,9 +145,10 @@ def walk_in_water(
                 scene, records, owner, batch, face, x, y, z, dz, weight, time, medium.speed,
                 east_slowness, north_slowness,
             )  # fmt: skip
-            if not bounces or uniform(state) >= scene.reflectance[face]:
-                ledger[SEABED] += weight
+            if not bounces:
                 return
+            ledger[SEABED] += weight * (1.0 - scene.reflectance[face])
+            weight *= scene.reflectance[face]
             nx, ny, nz = facing_normal(scene, face, dx, dy, dz)
             dx, dy, dz = lambert_direction(nx, ny, nz, state)
             x, y, z = x + nx * LIFT, y + ny * LIFT, z + nz * LIFT

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from survey.transport.directions import lambert_direction, turned
+from survey.optics.water import petzold_water
+from survey.transport.directions import drawn, lambert_direction, turned
+from survey.transport.scene import restricted_medium
 
 AZIMUTHS = 2.0 * np.pi * (np.arange(64) + 0.5) / 64
 INCOMING = [
@@ -38,3 +40,15 @@ def test_a_lambertian_face_sends_by_the_cosine():
         assert abs(value.mean() - expected) < 5.0 * value.std() / 200.0
     aside = sent - cosine[:, None] * normal
     assert np.all(np.abs(aside.mean(axis=0)) < 5.0 * aside.std(axis=0) / 200.0)
+
+
+@pytest.mark.parametrize("degrees", [10.0, 30.0, 60.0])
+def test_restricted_walks_turn_within_the_split_angle(degrees):
+    """No turn of 20,000 is wider, some come near, and all attenuation is c still."""
+    water = petzold_water("harbor", refractive_index=1.33, group_index=1.33)
+    medium = restricted_medium(water, split_angle=np.radians(degrees))
+    state = np.array([17, 19], np.uint64)
+    turns = [drawn(medium.sampler, medium.sampler_share, state) for _ in range(20_000)]
+    widest = np.degrees(np.arccos(1.0 - max(turns)))
+    assert 0.9 * degrees < widest < 1.001 * degrees
+    assert medium.attenuation + medium.scattering == pytest.approx(water.attenuation, rel=1e-12)
