@@ -59,3 +59,15 @@ def leaf_kernel(function: F) -> F:
         function, nogil=True, cache=True, error_model="numpy", _nrt=False
     )
     return cast(F, compiled)
+
+
+def inlined_kernel(function: F) -> F:
+    """Return a leaf kernel that is copied into the kernels that call it.
+
+    For kernels of many arguments that are called at one place: handing over a few named tuples of
+    arrays costs as much as fifty multiplications.
+    """
+    compiled = numba.njit(  # type: ignore[call-overload]
+        function, nogil=True, error_model="numpy", inline="always", _nrt=False
+    )
+    return cast(F, compiled)

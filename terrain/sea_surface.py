@@ -21,20 +21,15 @@ class SeaSurface:
         Variance of the slope along and across the wind [1].
     wind_from : float
         Direction the wind blows from, clockwise from grid north [rad].
-    correlation_length : float
-        Side of the square within which the slope is one and the same [m].
     """
 
     level: float
     upwind_slope_variance: float
     crosswind_slope_variance: float
     wind_from: float
-    correlation_length: float
 
     @classmethod
-    def from_wind(
-        cls, *, level: float, wind_speed: float, wind_from: float, correlation_length: float
-    ) -> SeaSurface:
+    def from_wind(cls, *, level: float, wind_speed: float, wind_from: float) -> SeaSurface:
         """Return the surface that Cox and Munk (1954, clean sea) measured at a wind speed.
 
         Slope variance 3.16e-3 U upwind and 0.003 + 1.92e-3 U crosswind, U at 12.5 m height.
@@ -43,8 +38,7 @@ class SeaSurface:
 
         Examples
         --------
-        >>> sea = SeaSurface.from_wind(
-        ...     level=0.0, wind_speed=5.0, wind_from=0.0, correlation_length=0.1)
+        >>> sea = SeaSurface.from_wind(level=0.0, wind_speed=5.0, wind_from=0.0)
         >>> round(sea.slope_variance, 4)
         0.0284
         """
@@ -56,7 +50,6 @@ class SeaSurface:
             if calm
             else COX_MUNK_CROSSWIND_CALM + COX_MUNK_CROSSWIND_PER_SPEED * wind_speed,
             wind_from=wind_from,
-            correlation_length=correlation_length,
         )
 
     @property

@@ -92,6 +92,23 @@ def build_grid(mesh: trimesh.Trimesh) -> SeabedGrid:
     )
 
 
+def elevations_within(
+    grid: SeabedGrid, *, west: float, east: float, south: float, north: float
+) -> tuple[float, float, float]:
+    """Return the lowest and highest elevation in a box, and the mean of its cells' tops [m].
+
+    Cells that the box cuts count whole; -inf where there is no seabed.
+    """
+    first, last = (int(np.floor((x - grid.x0) * grid.per_cell)) for x in (west, east))
+    below, above = (int(np.floor((y - grid.y0) * grid.per_cell)) for y in (south, north))
+    cells = grid.upper_z.reshape(grid.ny, grid.nx, 2)
+    inside = cells[max(0, below) : max(0, above + 1), max(0, first) : max(0, last + 1)]
+    known = inside[np.isfinite(inside[..., 0])]
+    if known.size == 0:
+        return -np.inf, -np.inf, -np.inf
+    return float(known[:, 0].min()), float(known[:, 1].max()), float(known[:, 1].mean())
+
+
 def _upper_cell_side(extent: FloatArray, faces: int) -> float:
     width, height = max(extent[0], 1e-3), max(extent[1], 1e-3)
     wanted = min(np.sqrt(width * height * FACES_PER_UPPER_CELL / faces), WIDEST_UPPER_CELL)

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from scipy.constants import speed_of_light
 
 from survey.optics.interface import fresnel_reflectance
-from survey.transport.join import TimeBins, deposit
 from survey.transport.launch import Optics, direction_of, pixel_at
 from survey.transport.scene import Scene
 from survey.transport.surface import glint_per_steradian
+from survey.transport.tally import TimeBins, deposit_in
 from terrain.kernels import leaf_kernel
 from terrain.raycast import first_hit
 
@@ -22,7 +22,7 @@ MIRROR_SAMPLES = 4096
 
 @leaf_kernel
 def add_glint(
-    histogram: NDArray[np.float64],
+    histogram: NDArray[np.float32],
     bins: TimeBins,
     scene: Scene,
     optics: Optics,
@@ -50,12 +50,12 @@ def add_glint(
         returned = glint_per_steradian(scene.sea, index, dx, dy, dz)
         returned *= share * area * cosine / (length * length)
         pixel = pixel_at(optics, forward, right)
-        deposit(histogram, pixel, bins, 2.0 * length / speed_of_light, returned)
+        deposit_in(histogram, pixel, bins, 2.0 * length / speed_of_light, returned)
 
 
 @leaf_kernel
 def add_mirror(
-    histogram: NDArray[np.float64],
+    histogram: NDArray[np.float32],
     bins: TimeBins,
     scene: Scene,
     optics: Optics,
@@ -83,4 +83,4 @@ def add_mirror(
         boresight = -(t[0, 2] * east + t[1, 2] * north) - t[2, 2] * down
         pixel = pixel_at(optics, forward / boresight, right / boresight)
         if pixel >= 0:
-            deposit(histogram, pixel, bins, 2.0 * height / speed_of_light, share)
+            deposit_in(histogram, pixel, bins, 2.0 * height / speed_of_light, share)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from terrain.kernels import leaf_kernel
 
-FORWARD, BACKWARD, RESTRICTED, COLUMN_PAIRS, SURFACE, COUNTS, REFERENCE = range(7)
+FORWARD, BACKWARD, TRACKS, PIXELS, COUNTS, REFERENCE, MOTION, NAVIGATION = range(8)
 
 _MULTIPLIER_0 = np.uint64(0xD2511F53)
 _MULTIPLIER_1 = np.uint64(0xCD9E8D57)

@@ -28,22 +28,23 @@ from survey.sensor.laser import Laser
 from survey.sensor.receiver import Receiver
 from survey.transport.directions import drawn, lambert_direction, turned
 from survey.transport.engine import kernel_optics
-from survey.transport.join import TimeBins, deposit
-from survey.transport.launch import Optics, direction_of, pixel_at
+from survey.transport.flat_water import (
+    BOTTOM,
+    COLUMN,
+    density_between,
+    density_table,
+    enter_flat_water,
+    seen_along,
+    way_to_event,
+)
+from survey.transport.launch import Optics, direction_of
 from survey.transport.random import REFERENCE, exponential, start_stream, uniform
 from survey.transport.scene import Medium, forward_medium
+from survey.transport.tally import TimeBins, deposit_in
 from terrain.kernels import kernel, leaf_kernel
 
 FloatArray = NDArray[np.float64]
-COLUMN, BOTTOM = 0, 1
 AIMED, AIMED_WITHIN = 0.2, 1.0 - math.cos(math.radians(45.0))
-
-
-@leaf_kernel
-def _density_at(cosine: float, table: FloatArray) -> float:
-    place = max(0.0, 0.5 * (cosine + 1.0)) * (table.shape[0] - 1)
-    i = min(int(place), table.shape[0] - 2)
-    return float(table[i] + (place - i) * (table[i + 1] - table[i]))
 
 
 @leaf_kernel
@@ -74,18 +75,6 @@ def _line_of_view(
 
 
 @leaf_kernel
-def _seen_along(optics: Optics, ux: float, uy: float, uz: float) -> tuple[float, float, int]:
-    """Return the tangents under which the camera sees light going along u, and the pixel."""
-    t = optics.turn
-    boresight = -(t[0, 2] * ux + t[1, 2] * uy + t[2, 2] * uz)
-    if boresight <= 0.0:
-        return 0.0, 0.0, -1
-    forward = -(t[0, 0] * ux + t[1, 0] * uy + t[2, 0] * uz) / boresight
-    right = -(t[0, 1] * ux + t[1, 1] * uy + t[2, 1] * uz) / boresight
-    return forward, right, pixel_at(optics, forward, right)
-
-
-@leaf_kernel
 def _scattered(
     medium: Medium, table: FloatArray, state: NDArray[np.uint64], dx: float, dy: float, dz: float
 ) -> tuple[float, float, float, float]:
@@ -100,7 +89,7 @@ def _scattered(
     else:
         nx, ny, nz = turned(dx, dy, dz, drawn(medium.sampler, 1.0, state), azimuth)
     aimed = 1.0 / (2.0 * math.pi * AIMED_WITHIN) if 1.0 - nz <= AIMED_WITHIN else 0.0
-    density = _density_at(dx * nx + dy * ny + dz * nz, table)
+    density = density_between(dx, dy, dz, nx, ny, nz, table)
     return nx, ny, nz, density / ((1.0 - AIMED) * density + AIMED * aimed)
 
 
@@ -120,30 +109,29 @@ def _score_straight_exit(
     dz: float,
     table: FloatArray,
     peak_cosine: float,
-    rho: float,
+    scatters: bool,
     weight: float,
     time: float,
 ) -> None:
     """Add the chance to leave for the camera in one straight line, on a random line of its view.
 
-    A bottom of reflectance ``rho`` (zero: a scattering) sends rho/pi cos, water its phase function.
+    Water sends by its phase function, the bottom cos/pi of what it does not absorb.
     """
     forward = (2.0 * uniform(state) - 1.0) * optics.half_forward
     right = (2.0 * uniform(state) - 1.0) * optics.half_right
     wx, wy, wz, ax, ay, az, solid = _line_of_view(optics, medium.refractive_index, forward, right)
-    sent = rho / math.pi * wz
-    if rho == 0.0:
-        cosine = dx * wx + dy * wy + dz * wz
-        if cosine >= peak_cosine:
+    sent = wz / math.pi
+    if scatters:
+        if dx * wx + dy * wy + dz * wz >= peak_cosine:
             return
-        sent = _density_at(cosine, table)
+        sent = density_between(dx, dy, dz, wx, wy, wz, table)
     slant = depth / wz
     length = _reaches_aperture(optics, x + wx * slant, y + wy * slant, 0.0, ax, ay, az)
     if length < 0.0:
         return
     passed = 1.0 - fresnel_reflectance(az, 1.0 / medium.refractive_index)
     score = weight * sent * solid * passed * math.exp(-attenuation * slant)
-    deposit(histogram, 0, bins, time + slant / medium.speed + length / speed_of_light, score)
+    deposit_in(histogram, 0, bins, time + slant / medium.speed + length / speed_of_light, score)
 
 
 @leaf_kernel
@@ -165,8 +153,8 @@ def _count_arrival(
     length = _reaches_aperture(optics, x, y, 0.0, ux, uy, uz)
     if length < 0.0:
         return
-    if _seen_along(optics, ux, uy, uz)[2] >= 0:
-        deposit(histogram, 0, bins, time + length / speed_of_light, weight)
+    if seen_along(optics, ux, uy, uz) >= 0:
+        deposit_in(histogram, 0, bins, time + length / speed_of_light, weight)
 
 
 @leaf_kernel
@@ -186,40 +174,31 @@ def _follow(
 ) -> None:
     """Follow one photon through flat water of uniform depth, the surface at up = 0."""
     attenuation = medium.attenuation + medium.scattering
-    forward = (2.0 * uniform(state) - 1.0) * optics.half_forward
-    right = (2.0 * uniform(state) - 1.0) * optics.half_right
-    dx, dy, dz, _ = direction_of(optics, forward, right)
-    length = -optics.position[2] / dz
-    x, y, z = optics.position[0] + dx * length, optics.position[1] + dy * length, 0.0
-    time = length / speed_of_light
-    weight = photons * (1.0 - fresnel_reflectance(-dz, 1.0 / medium.refractive_index))
-    dx, dy, dz = refracted(dx, dy, dz, 0.0, 0.0, 1.0, 1.0 / medium.refractive_index)
-    into, estimated = column, True
+    x, y, dx, dy, dz, weight, time = enter_flat_water(optics, medium.refractive_index, state)
+    weight *= photons
+    z, into, estimated = 0.0, column, True
     while time < latest and weight > 0.0:
-        free = exponential(state) / medium.scattering
-        wall = -z / dz if dz > 0.0 else (-depth - z) / dz
-        step = min(free, wall)
+        step, scatters = way_to_event(medium, depth, exponential(state), z, dz)
         x, y, z = x + dx * step, y + dy * step, z + dz * step
         time += step / medium.speed
         weight *= math.exp(-medium.attenuation * step)
-        if step == free:
+        if scatters:
             _score_straight_exit(
                 into, bins, optics, medium, attenuation, state, x, y, -z, dx, dy, dz,
-                table, peak_cosine, 0.0, weight, time,
+                table, peak_cosine, True, weight, time,
             )  # fmt: skip
             ox, oy, oz = dx, dy, dz
             dx, dy, dz, factor = _scattered(medium, table, state, dx, dy, dz)
             weight *= factor
             estimated = ox * dx + oy * dy + oz * dz < peak_cosine
         elif dz < 0.0:
-            into = bottom
+            into, z, estimated = bottom, -depth, True
+            weight *= rho
             _score_straight_exit(
                 into, bins, optics, medium, attenuation, state, x, y, depth, dx, dy, dz,
-                table, peak_cosine, rho, weight, time,
+                table, peak_cosine, False, weight, time,
             )  # fmt: skip
-            weight *= rho
             dx, dy, dz = lambert_direction(0.0, 0.0, 1.0, state)
-            z, estimated = -depth, True
         else:
             z = 0.0
             if uniform(state) >= fresnel_reflectance(dz, medium.refractive_index):
@@ -295,7 +274,7 @@ def reference_flash(
     """
     optics = kernel_optics(camera=camera, receiver=receiver, pose=pose)
     bins = TimeBins(receiver.gate_start, receiver.bin_width, receiver.bins)
-    medium, table = forward_medium(water), water.phase_function.cosine_table(entries=200_001)
+    medium, table = forward_medium(water), density_table(water.phase_function)
     result = np.zeros((batches, 2, receiver.bins))
 
     def run(batch: int) -> None:

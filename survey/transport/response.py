@@ -17,25 +17,21 @@ from numpy.typing import NDArray
 from scipy.constants import speed_of_light
 
 from survey.optics.water import Water
-from survey.transport.random import BACKWARD, FORWARD, chance, start_stream
-from survey.transport.response_walks import Planes, Tracks, pair_tracks, walk_down
-from survey.transport.scene import Medium, forward_medium, restricted_medium
-from terrain.kernels import kernel
+from survey.transport.random import BACKWARD, FORWARD, chance
+from survey.transport.response_column import column_batches
+from survey.transport.response_echo import first_arrivals
+from survey.transport.response_walks import BATCHES, Footprint
+from survey.transport.scene import Medium, forward_medium
 
 FloatArray = NDArray[np.float64]
 Illumination = Literal["flood", "isolated"]
 
-SIDE = 2.0
+SQUARE = Footprint(side=2.0, growth=0.0)
 BIN = 0.5
 GATE = 10e-9
 OPTICAL_DEPTH = 8.0
-SPLIT_ANGLE = math.radians(30.0)
-BATCHES = 64
-WALKS_AT_ONCE = 16
-BLOCKS_PER_BATCH = 160
 ARRIVALS_PER_BATCH = 6000
 PAIRINGS = 8
-NOWHERE = Planes(first=0.0, spacing=1.0, number=0, longest_path=math.inf)
 
 
 class ResponseError(ValueError):
@@ -110,7 +106,9 @@ def response(
     if faults:
         raise ResponseError("\n".join(faults))
     which = ("flood", "isolated").index(illumination)
-    column = column_batches(water=water, seed=seed)[:, which]
+    bins = math.ceil(OPTICAL_DEPTH / water.attenuation / BIN)
+    column = column_batches(water=water, footprint=SQUARE, bins=bins, bin_width=BIN, seed=seed)
+    column = column[:, which]
     bottom = _bottom_batches(water, bottom_depth, which, seed)
     mean, sem = column.mean(axis=0), column.std(axis=0, ddof=1) / BATCHES**0.5
     return Response(
@@ -123,69 +121,6 @@ def response(
         mean_excess_path=bottom.excess.sum() / bottom.two_way.sum(),
         blur_radius=bottom.blur_radius,
     )
-
-
-def column_batches(*, water: Water, seed: int) -> FloatArray:
-    """Return attenuated backscatter (batches, flood and isolated, bins) [1/(m sr)]."""
-    bins = math.ceil(OPTICAL_DEPTH / water.attenuation / BIN)
-    deepest = bins * BIN
-    spacing = min(0.25 * BIN, 0.25 / water.attenuation)
-    planes = math.ceil(deepest / spacing)
-    room = WALKS_AT_ONCE * planes * 8
-    result = np.zeros((BATCHES, 2, bins))
-    forward = forward_medium(water)
-    backward = restricted_medium(water, split_angle=SPLIT_ANGLE)
-    table = water.phase_function.cosine_table()
-    for batch in range(BATCHES):
-        crossings = _column_batch(
-            result[batch], forward, backward, table, math.cos(SPLIT_ANGLE), water.scattering,
-            spacing, planes, 2.0 * deepest, room, seed, batch,
-        )  # fmt: skip
-        if crossings > room:
-            raise RuntimeError(f"response: {crossings} crossings do not fit into {room}")
-    return result
-
-
-@kernel
-def _column_batch(
-    column: FloatArray,
-    forward: Medium,
-    backward: Medium,
-    table: FloatArray,
-    split_cosine: float,
-    scattering: float,
-    spacing: float,
-    number: int,
-    longest_path: float,
-    room: int,
-    seed: int,
-    batch: int,
-) -> int:
-    """Fill ``column`` by blocks of walks, all pairs in each, planes shifted from block to block."""
-    state, arrival = np.empty(2, np.uint64), np.empty(4)
-    there = Tracks(
-        np.empty(number, np.int64), np.empty(room, np.int64), np.empty((room, 7)),
-        np.zeros(1, np.int64),
-    )  # fmt: skip
-    back = Tracks(
-        np.empty(number, np.int64), np.empty(room, np.int64), np.empty((room, 7)),
-        np.zeros(1, np.int64),
-    )  # fmt: skip
-    pairs = BLOCKS_PER_BATCH * WALKS_AT_ONCE * WALKS_AT_ONCE
-    most = 0
-    for block in range(BLOCKS_PER_BATCH):
-        planes = Planes((block + 0.5) / BLOCKS_PER_BATCH * spacing, spacing, number, longest_path)
-        there.head[:], there.filled[0] = -1, 0
-        back.head[:], back.filled[0] = -1, 0
-        for i in range(WALKS_AT_ONCE):
-            start_stream(state, seed, FORWARD, block, batch, i)
-            walk_down(forward, planes, there, arrival, math.inf, state)
-            start_stream(state, seed, BACKWARD, block, batch, i)
-            walk_down(backward, planes, back, arrival, math.inf, state)
-        most = max(most, there.filled[0], back.filled[0])
-        factor = scattering * spacing / BIN / pairs
-        pair_tracks(column, planes, there, back, table, split_cosine, factor, SIDE, BIN)
-    return most
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -209,7 +144,7 @@ def _bottom_batches(water: Water, depth: float, which: int, seed: int) -> _Botto
         for shift in range(1, PAIRINGS + 1):
             met = np.roll(there, shift, axis=0)
             apart = met[:, :2] - back[:, :2]
-            overlap = np.prod(np.clip(1.0 - np.abs(apart) / SIDE, 0.0, None), axis=1)
+            overlap = np.prod(np.clip(1.0 - np.abs(apart) / SQUARE.side, 0.0, None), axis=1)
             light = met[:, 3] * back[:, 3] * (overlap if which else 1.0) / PAIRINGS
             late = met[:, 2] + back[:, 2] - 2.0 * depth
             two_way[batch] += light.mean()
@@ -230,8 +165,8 @@ def _bottom_batches(water: Water, depth: float, which: int, seed: int) -> _Botto
 
 def _starts(apart: FloatArray, draws: np.random.Generator) -> FloatArray:
     """Draw where in the square a walk back begins, its forward partner beginning there too."""
-    low = np.clip(-0.5 * SIDE + apart, -0.5 * SIDE, 0.5 * SIDE)
-    high = np.clip(0.5 * SIDE + apart, -0.5 * SIDE, 0.5 * SIDE)
+    low = np.clip(-0.5 * SQUARE.side + apart, -0.5 * SQUARE.side, 0.5 * SQUARE.side)
+    high = np.clip(0.5 * SQUARE.side + apart, -0.5 * SQUARE.side, 0.5 * SQUARE.side)
     return np.asarray(low + (high - low) * draws.random(apart.shape))
 
 
@@ -241,17 +176,11 @@ def _weighted_median(values: FloatArray, weights: FloatArray) -> float:
     return float(values[order][np.searchsorted(reached, 0.5 * reached[-1])])
 
 
-@kernel
 def _arrivals(medium: Medium, depth: float, seed: int, purpose: int, batch: int) -> FloatArray:
     """Return x, y, path and weight of walks at the bottom; weight 0 for those that never arrive."""
-    state, arrival = np.empty(2, np.uint64), np.zeros((ARRIVALS_PER_BATCH, 4))
-    nothing = Tracks(
-        np.empty(0, np.int64), np.empty(0, np.int64), np.empty((0, 7)), np.zeros(1, np.int64)
-    )
-    for i in range(ARRIVALS_PER_BATCH):
-        start_stream(state, seed, purpose, 1 << 20, batch, i)
-        walk_down(medium, NOWHERE, nothing, arrival[i], depth, state)
-    return arrival
+    arrivals = np.zeros((ARRIVALS_PER_BATCH, 1, 4))
+    first_arrivals(arrivals, medium, np.array([depth]), seed, purpose, batch)
+    return arrivals[:, 0]
 
 
 def _estimate(batches: FloatArray) -> Estimate:

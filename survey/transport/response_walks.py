@@ -22,6 +22,7 @@ from terrain.kernels import leaf_kernel
 FloatArray = NDArray[np.float64]
 
 FLOOD, ISOLATED = 0, 1
+BATCHES = 64
 ROULETTE_BELOW, ROULETTE_SURVIVAL = 1e-5, 0.1
 
 
@@ -32,6 +33,16 @@ class Planes(NamedTuple):
     spacing: float
     number: int
     longest_path: float
+
+
+class Footprint(NamedTuple):
+    """What a pixel lights and sees: a square of ``side`` at the surface [m].
+
+    Each metre of depth adds ``growth`` [1] to its side; scattered light spreads on top of that.
+    """
+
+    side: float
+    growth: float
 
 
 class Tracks(NamedTuple):
@@ -85,17 +96,19 @@ def walk_down(
     medium: Medium,
     planes: Planes,
     tracks: Tracks,
-    arrival: FloatArray,
-    depth: float,
+    arrivals: FloatArray,
+    depths: FloatArray,
     state: NDArray[np.uint64],
 ) -> None:
-    """Follow one walk from the surface until it leaves, is too long, or reaches ``depth``.
+    """Follow one walk from the surface until it leaves, is too long, or reaches the last depth.
 
-    There, if at all, ``arrival`` takes x, y, path and weight. Light that goes up through the
-    surface is gone.
+    ``arrivals`` (depths, 4) takes x, y, path and weight where the walk first comes to each of the
+    ``depths``, which grow. Light that goes up through the surface is gone.
     """
     x, y, z, dx, dy, dz = 0.0, 0.0, 0.0, 0.0, 0.0, 1.0
     weight, path = 1.0, 0.0
+    reached, levels = 0, depths.shape[0]
+    depth = depths[levels - 1] if levels > 0 else math.inf
     while path < planes.longest_path:
         length = exponential(state) / medium.scattering
         wall = (depth - z) / dz if dz > 0.0 else (-z / dz if dz < 0.0 else math.inf)
@@ -105,12 +118,19 @@ def walk_down(
             note_crossings(
                 tracks, planes, x, y, z, dx, dy, dz, length, path, weight, medium.attenuation
             )
+        while reached < levels - 1 and z + dz * length >= depths[reached]:
+            along = (depths[reached] - z) / dz
+            at = arrivals[reached]
+            at[0], at[1], at[2] = x + dx * along, y + dy * along, path + along
+            at[3] = weight * math.exp(-medium.attenuation * along)
+            reached += 1
         x, y, z = x + dx * length, y + dy * length, z + dz * length
         path += length
         weight *= math.exp(-medium.attenuation * length)
         if stopped:
             if dz > 0.0:
-                arrival[0], arrival[1], arrival[2], arrival[3] = x, y, path, weight
+                at = arrivals[levels - 1]
+                at[0], at[1], at[2], at[3] = x, y, path, weight
             return
         if weight < ROULETTE_BELOW:
             if uniform(state) >= ROULETTE_SURVIVAL:
@@ -136,12 +156,13 @@ def pair_tracks(
     cosine_table: FloatArray,
     split_cosine: float,
     factor: float,
-    side: float,
+    footprint: Footprint,
     bin_width: float,
 ) -> None:
     """Add all meetings of two sets of walks to ``column`` (2, bins) of half the path length."""
     entries = cosine_table.shape[0] - 1
     for k in range(planes.number):
+        side = footprint.side + footprint.growth * (planes.first + k * planes.spacing)
         f = forward.head[k]
         while f >= 0:
             a = forward.state

@@ -1,4 +1,4 @@
-"""What a walk meets, as named tuples of numbers and arrays that kernels can take."""
+"""What light meets, as named tuples of numbers and arrays that kernels can take."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from scipy.constants import speed_of_light
 
 from survey.optics.water import Water
-from terrain.patches import PatchTable
 from terrain.raycast import SeabedGrid
 from terrain.sea_surface import SeaSurface
 
@@ -28,38 +27,26 @@ class Medium(NamedTuple):
 
 
 class Sea(NamedTuple):
-    """Mean level and facet slopes; ``key`` names the realisation."""
+    """Mean level and standard deviation of the facet slopes."""
 
     level: float
     upwind_deviation: float
     crosswind_deviation: float
     wind_east: float
     wind_north: float
-    facet: float
-    key: np.uint64
 
 
 class Bounds(NamedTuple):
-    """Box in which walks are followed, and the latest time they may reach."""
+    """Box in which walks are followed, the seabed's range and mean depth in it, the latest time."""
 
     west: float
     east: float
     south: float
     north: float
+    lowest: float
+    highest: float
+    depth: float
     latest: float
-
-
-class Layers(NamedTuple):
-    """Planes of the water column and their cells; the first plane lies at ``top``."""
-
-    top: float
-    thickness: float
-    planes: int
-    west: float
-    south: float
-    cell: float
-    across: int
-    along: int
 
 
 class Scene(NamedTuple):
@@ -67,10 +54,8 @@ class Scene(NamedTuple):
 
     sea: Sea
     grid: SeabedGrid
-    patches: PatchTable
     reflectance: FloatArray
     bounds: Bounds
-    layers: Layers
 
 
 def forward_medium(water: Water) -> Medium:
@@ -104,14 +89,12 @@ def restricted_medium(water: Water, *, split_angle: float) -> Medium:
     )
 
 
-def kernel_sea(surface: SeaSurface, *, key: int) -> Sea:
-    """Return the realisation ``key`` of a sea surface."""
+def kernel_sea(surface: SeaSurface) -> Sea:
+    """Return a sea surface as kernels take it."""
     return Sea(
         level=surface.level,
         upwind_deviation=surface.upwind_slope_variance**0.5,
         crosswind_deviation=surface.crosswind_slope_variance**0.5,
         wind_east=float(np.sin(surface.wind_from)),
         wind_north=float(np.cos(surface.wind_from)),
-        facet=surface.correlation_length,
-        key=np.uint64(key),
     )

@@ -5,33 +5,29 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtri
 
-from survey.optics.interface import fresnel_reflectance, reflected, refracted
-from survey.transport.random import mixed
+from survey.optics.interface import fresnel_reflectance, refracted
+from survey.transport.random import uniform
 from survey.transport.scene import Sea
 from terrain.kernels import leaf_kernel
 
-_TO_UNIT = 1.0 / (1 << 53)
+_ENTRIES = 4096
+_QUANTILES = ndtri((np.arange(_ENTRIES) + 0.5) / _ENTRIES)
+# Gaussian numbers of equal chance: 4,096 quantiles, scaled to unit variance.
+NORMAL_QUANTILES = _QUANTILES / _QUANTILES.std()
 
 
 @leaf_kernel
-def facet_normal(sea: Sea, x: float, y: float) -> tuple[float, float, float]:
-    """Upward unit normal of the facet at a place: one Gaussian slope for each square.
-
-    The square's numbers come from its place and the realisation's key, so that every walk of the
-    realisation finds the same slope there.
-    """
+def drawn_normal(
+    sea: Sea, quantiles: NDArray[np.float64], state: NDArray[np.uint64]
+) -> tuple[float, float, float]:
+    """Draw the upward unit normal of a facet: Gaussian slopes along and across the wind."""
     if sea.upwind_deviation == 0.0 and sea.crosswind_deviation == 0.0:
         return 0.0, 0.0, 1.0
-    i = np.uint64(np.int64(math.floor(x / sea.facet)))
-    j = np.uint64(np.int64(math.floor(y / sea.facet)))
-    address = mixed(sea.key ^ mixed(i ^ mixed(j + np.uint64(0x9E3779B97F4A7C15))))
-    radius_bits = mixed(address)
-    angle_bits = mixed(address ^ np.uint64(0xD1B54A32D192ED03))
-    radius = math.sqrt(-2.0 * math.log(1.0 - float(radius_bits >> np.uint64(11)) * _TO_UNIT))
-    angle = 2.0 * math.pi * float(angle_bits >> np.uint64(11)) * _TO_UNIT
-    up = sea.upwind_deviation * radius * math.cos(angle)
-    across = sea.crosswind_deviation * radius * math.sin(angle)
+    up = sea.upwind_deviation * quantiles[int(uniform(state) * quantiles.shape[0])]
+    across = sea.crosswind_deviation * quantiles[int(uniform(state) * quantiles.shape[0])]
     slope_x = up * sea.wind_east + across * sea.wind_north
     slope_y = up * sea.wind_north - across * sea.wind_east
     norm = 1.0 / math.sqrt(1.0 + slope_x * slope_x + slope_y * slope_y)
@@ -40,14 +36,13 @@ def facet_normal(sea: Sea, x: float, y: float) -> tuple[float, float, float]:
 
 @leaf_kernel
 def enter_water(
-    sea: Sea, index: float, x: float, y: float, dx: float, dy: float, dz: float
+    index: float, dx: float, dy: float, dz: float, mx: float, my: float, mz: float
 ) -> tuple[float, float, float, float, float]:
-    """Refract a downward ray at its facet: new direction, facet weight, Fresnel reflectance.
+    """Refract a downward ray at a facet: new direction, facet weight, Fresnel reflectance.
 
     The facet weight (d . m) / (d_z m_z) is how much more of the ray a tilted facet catches than
     level water does; its mean over the slopes is one.
     """
-    mx, my, mz = facet_normal(sea, x, y)
     cos_in = -(dx * mx + dy * my + dz * mz)
     if cos_in <= 0.0:
         return dx, dy, dz, 0.0, 0.0
@@ -57,20 +52,18 @@ def enter_water(
 
 
 @leaf_kernel
-def reflectance_from_below(
-    sea: Sea, index: float, x: float, y: float, dx: float, dy: float, dz: float
-) -> tuple[float, float, float, float]:
-    """Meet the surface from below: Fresnel reflectance and the direction if reflected.
+def facing_from_below(
+    dx: float, dy: float, dz: float, mx: float, my: float, mz: float
+) -> tuple[float, float, float]:
+    """Return the facet normal at which a rising ray is mirrored.
 
-    Departure: facets are weighted as seen along the vertical, and a ray that a facet would send
-    up again is sent down at the same angle; both touch light near the horizontal alone.
+    Departure: facets are weighted as seen along the vertical; a ray that a facet would miss, or
+    send up again, meets level water instead. Both touch light near the horizontal alone.
     """
-    mx, my, mz = facet_normal(sea, x, y)
     cos_in = dx * mx + dy * my + dz * mz
-    if cos_in <= 0.0:
-        return 1.0, dx, dy, -dz
-    rx, ry, rz = reflected(dx, dy, dz, mx, my, mz)
-    return fresnel_reflectance(cos_in, index), rx, ry, -abs(rz)
+    if cos_in <= 0.0 or dz - 2.0 * cos_in * mz >= 0.0:
+        return 0.0, 0.0, 1.0
+    return mx, my, mz
 
 
 @leaf_kernel

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from survey.transport.join import TimeBins
+from survey.transport.tally import TimeBins
 from terrain.kernels import kernel
 
 FloatArray = NDArray[np.float64]
@@ -32,20 +32,23 @@ class Waveforms:
         Squared Monte Carlo standard error of the same; the surface is computed without chance.
     bin_start, bin_width : float
         Early edge of the first bin after emission, and width of the bins [s].
+    scatterings : int
+        Scatterings on all walks of the flash.
     ledger : dict
-        Energy balance of the forward walks by name, in launched photons.
+        What became of the walks from the pixels, by name, as shares of all.
     """
 
-    photo_electrons: FloatArray
-    variance: FloatArray
+    photo_electrons: NDArray[np.float32]
+    variance: NDArray[np.float32]
     bin_start: float
     bin_width: float
+    scatterings: int
     ledger: dict[str, float]
 
     @property
     def total(self) -> FloatArray:
         """Mean photo-electrons of all origins (rows, columns, bins)."""
-        return np.asarray(self.photo_electrons.sum(axis=0))
+        return np.asarray(self.photo_electrons.sum(axis=0, dtype=np.float64))
 
     @property
     def times(self) -> FloatArray:
@@ -55,7 +58,7 @@ class Waveforms:
 
     def origin(self, name: str) -> FloatArray:
         """Return the mean photo-electrons of one origin (rows, columns, bins)."""
-        return np.asarray(self.photo_electrons[ORIGINS.index(name)])
+        return np.asarray(self.photo_electrons[ORIGINS.index(name)], dtype=np.float64)
 
 
 def padded_bins(*, start: float, width: float, bins: int, sigma: float) -> tuple[TimeBins, int]:
@@ -94,53 +97,4 @@ def blurred(histogram: NDArray[np.floating], taps: NDArray[np.float64]) -> NDArr
             low, high = max(0, i - 2 * pad), min(bins, i + 1)
             for j in range(low, high):
                 result[row, j] += photons * taps[j - i + 2 * pad]
-    return result
-
-
-@kernel
-def crossed_variance(
-    batches: NDArray[np.float32], taps: NDArray[np.float32]
-) -> NDArray[np.float32]:
-    """Return the squared standard error of a mean over all pairs of two kinds of batches.
-
-    With R batches of each kind, X_ij = m + f_i + b_j + g_ij has the mean's variance
-    (s_f + s_b) / R + s_g / R^2. The means over the other kind, X_i. and X_.j, scatter by
-    s_f + s_g / R and s_b + s_g / R; the matched X_ii by s_f + s_b + s_g. The pairing's part s_g is
-    solved for, and kept within what it can be.
-
-    Parameters
-    ----------
-    batches : array (3, R, origins, pixels, bins)
-        X_i., X_.j and X_ii, without the pulse's width.
-    taps : array (odd number,)
-        The pulse, with which every row is convolved first.
-
-    Returns
-    -------
-    array (origins, pixels, bins)
-    """
-    _, count, origins, pixels, bins = batches.shape
-    result = np.empty((origins, pixels, bins), np.float32)
-    half = taps.shape[0] // 2
-    for origin in range(origins):
-        for pixel in range(pixels):
-            total = np.zeros((3, bins), np.float32)
-            squares = np.zeros((3, bins), np.float32)
-            row = np.empty(bins, np.float32)
-            for side in range(3):
-                for batch in range(count):
-                    row[:] = 0.0
-                    for i in range(bins):
-                        photons = batches[side, batch, origin, pixel, i]
-                        if photons != 0.0:
-                            for j in range(max(0, i - half), min(bins, i + half + 1)):
-                                row[j] += photons * taps[j - i + half]
-                    total[side] += row
-                    squares[side] += row * row
-            for i in range(bins):
-                scatter = squares[:, i] - total[:, i] * total[:, i] / count
-                scatter /= count * (count - 1.0)
-                apart = scatter[0] + scatter[1]
-                pairing = (scatter[2] - apart) / (count - 2.0)
-                result[origin, pixel, i] = apart - min(max(pairing, 0.0), 0.5 * apart)
     return result

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from survey.flight.pose import Pose
+from survey.optics.phase import PhaseFunction
 from survey.optics.water import petzold_water
 from survey.sensor.camera import Camera
 from survey.sensor.laser import Laser
@@ -17,6 +18,7 @@ from survey.transport.settings import TransportSettings
 from terrain.generators import Ground, slope
 from terrain.map_frame import MapFrame
 from terrain.sea_surface import SeaSurface
+from terrain.seabed import Seabed
 
 FRAME = MapFrame(easting=500000.0, northing=6.0e6, epsg=25832, vertical_epsg=5714)
 
@@ -36,10 +38,15 @@ def make_engine(
     pulse_energy: float = 1.0,
     aperture_radius: float = 0.005,
     scale: float = 1.0,
+    bins: int = 300,
+    shape: tuple[int, int] = (32, 64),
+    pixel_tangent: float = 0.008,
+    seabed: Seabed | None = None,
+    phase_function: PhaseFunction | None = None,
     seed: int = 1,
     **settings: Any,
 ) -> Engine:
-    """Return an engine over a plane seabed; ``scale`` stretches every length and time."""
+    """Return an engine, over a plane seabed by default; ``scale`` stretches lengths and times."""
     ground = Ground(
         map_frame=FRAME,
         length=800.0 * scale,
@@ -47,34 +54,33 @@ def make_engine(
         axis=np.pi / 2,
         reflectance=reflectance,
     )
-    sizes = {"patch_size": 1.0, "layer_thickness": 0.5, "cell_size": 2.0} | settings
-    for name in ("patch_size", "layer_thickness", "cell_size"):
-        sizes[name] *= scale
-    walks = sizes.pop("forward_walks_per_m2", 16.0) / scale**2
     return Engine(
-        seabed=slope(ground=ground, depth=depth * scale, gradient=gradient),
-        surface=SeaSurface.from_wind(
-            level=0.0, wind_speed=wind_speed, wind_from=0.0, correlation_length=0.1 * scale
-        ),
+        seabed=slope(ground=ground, depth=depth * scale, gradient=gradient)
+        if seabed is None
+        else seabed,
+        surface=SeaSurface.from_wind(level=0.0, wind_speed=wind_speed, wind_from=0.0),
         water=petzold_water(
             water,
             refractive_index=index,
             group_index=index if group_index is None else group_index,
             absorption=absorption,
             scattering=scattering,
+            phase_function=phase_function,
         ),
         laser=Laser(pulse_energy=pulse_energy, wavelength=532e-9, pulse_fwhm=pulse_fwhm * scale),
-        camera=Camera(rows=32, columns=64, pixel_tangent=0.008, long_side="along"),
+        camera=Camera(
+            rows=shape[0], columns=shape[1], pixel_tangent=pixel_tangent, long_side="along"
+        ),
         receiver=Receiver(
             aperture_radius=aperture_radius * scale,
             filter_width=1e-9,
             optics_transmission=1.0,
             gate_start=1.3e-6 * scale,
             bin_width=1e-9 * scale,
-            bins=300,
+            bins=bins,
         ),
         photo_electrons_per_photon=0.2,
-        settings=TransportSettings(forward_walks_per_m2=walks, **sizes),
+        settings=TransportSettings(**settings),
         seed=seed,
     )
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.constants import speed_of_light
 
+from survey.cloud.georeference import pixel_rays
 from survey.optics.interface import fresnel_reflectance
 
 DEPTH, REFLECTANCE, INDEX, HEIGHT = 10.0, 0.1, 1.33, 200.0
@@ -43,26 +44,29 @@ def test_no_scattering_gives_the_lidar_equation(engine_of, nadir):
     """P = E_pixel T^2 (rho / pi) A / (n H + z)^2 exp(-2 c z) at nadir, within 0.5 %.
 
     Rationale: with b = 0 light goes down and comes back, nothing else.
-    Expected: the four pixels at nadir together, and all pixels not at the edge together.
+    Expected: pixels around nadir by that; all but those at the edge within 0.02 % together and
+    0.1 % each (one standard deviation 0.01 %).
     Source: the lidar equation; for other pixels the Jacobian of the refracted footprint.
     """
-    engine = engine_of(scattering=0.0, wind_speed=0.0, backward_walks_per_pixel=128)
-    flashes = [engine.flash(pose=nadir, frame=frame) for frame in range(4)]
-    echo = np.mean([flash.origin("bottom").sum(axis=-1) for flash in flashes], axis=0)
+    engine = engine_of(scattering=0.0, wind_speed=0.0, walks_per_pixel=128)
+    flash = engine.flash(pose=nadir, frame=0)
+    echo = flash.origin("bottom").sum(axis=-1)
     transmitted = 1.0 - ((INDEX - 1.0) / (INDEX + 1.0)) ** 2
     area = engine.receiver.aperture_area
     closed = engine.photo_electrons / 2048 * transmitted**2 * REFLECTANCE / np.pi
     closed *= area / (INDEX * HEIGHT + DEPTH) ** 2
     closed *= np.exp(-2.0 * engine.water.absorption * DEPTH)
     assert echo[14:18, 28:36].mean() == pytest.approx(closed, rel=0.005)
-    assert echo[INNER].sum() == pytest.approx(clear_water_echo(engine)[INNER].sum(), rel=0.002)
-    assert flashes[0].origin("column").sum() == 0.0
+    expected = clear_water_echo(engine)[INNER]
+    assert echo[INNER].sum() == pytest.approx(expected.sum(), rel=2e-4)
+    assert echo[INNER] == pytest.approx(expected, rel=1e-3)
+    assert flash.origin("column").sum() == 0.0
 
 
 def test_nothing_arrives_too_early(engine_of, nadir):
     """No light of the bottom before the straight way there and back, none of the column
     before the surface; the impulse response, shared over two neighbouring bins."""
-    engine = engine_of(pulse_fwhm=1e-15, wind_speed=0.0, backward_walks_per_pixel=16)
+    engine = engine_of(pulse_fwhm=1e-15, wind_speed=0.0, walks_per_pixel=16)
     flash = engine.flash(pose=nadir, frame=0)
     to_surface = 2.0 * HEIGHT / speed_of_light
     to_bottom = to_surface + 2.0 * INDEX * DEPTH / speed_of_light
@@ -73,15 +77,16 @@ def test_nothing_arrives_too_early(engine_of, nadir):
 
 
 def test_black_bottom_sends_nothing(engine_of, nadir):
-    engine = engine_of(reflectance=0.0, backward_walks_per_pixel=16)
+    engine = engine_of(reflectance=0.0, walks_per_pixel=16)
     flash = engine.flash(pose=nadir, frame=0)
     assert flash.origin("bottom").sum() == 0.0
     assert flash.origin("column").sum() > 0.0
 
 
-def test_energy_of_the_forward_walks_balances(engine_of, nadir):
+@pytest.mark.parametrize(("water", "depth"), [("coastal", 10.0), ("harbor", 30.0)])
+def test_energy_of_the_walks_from_the_pixels_balances(engine_of, nadir, water, depth):
     """Launched = reflected + absorbed + escaped + aside + late + in the bottom + roulette."""
-    flash = engine_of(backward_walks_per_pixel=16).flash(pose=nadir, frame=0)
+    flash = engine_of(water=water, depth=depth, walks_per_pixel=16).flash(pose=nadir, frame=0)
     ledger = dict(flash.ledger)
     launched = ledger.pop("launched") + ledger.pop("facet weighting")
     assert sum(ledger.values()) == pytest.approx(launched, rel=1e-9)
@@ -90,7 +95,7 @@ def test_energy_of_the_forward_walks_balances(engine_of, nadir):
 
 def test_pulse_energy_scales_exactly(engine_of, nadir):
     """Eight times the energy gives exactly eight times the photo-electrons."""
-    few = {"backward_walks_per_pixel": 16, "forward_walks_per_m2": 4.0}
+    few = {"walks_per_pixel": 16}
     plain = engine_of(**few).flash(pose=nadir, frame=3).photo_electrons
     strong = engine_of(pulse_energy=8.0, **few).flash(pose=nadir, frame=3).photo_electrons
     assert np.array_equal(strong, 8.0 * plain)
@@ -98,7 +103,7 @@ def test_pulse_energy_scales_exactly(engine_of, nadir):
 
 def test_similar_scenes_give_the_same_echo(engine_of, nadir):
     """All lengths and times doubled, a and b halved: the same histories in the same bins."""
-    few = {"backward_walks_per_pixel": 16, "forward_walks_per_m2": 4.0}
+    few = {"walks_per_pixel": 16}
     plain = engine_of(absorption=0.18, scattering=0.2, **few)
     large = engine_of(absorption=0.09, scattering=0.1, scale=2.0, **few)
     twice = replace(nadir, position=2.0 * nadir.position)
@@ -108,7 +113,7 @@ def test_similar_scenes_give_the_same_echo(engine_of, nadir):
 
 
 def test_the_same_flash_draws_the_same_light(engine_of, nadir):
-    few = {"backward_walks_per_pixel": 16, "forward_walks_per_m2": 4.0}
+    few = {"walks_per_pixel": 16}
     first, second = (engine_of(**few).flash(pose=nadir, frame=5) for _ in range(2))
     assert np.array_equal(first.photo_electrons, second.photo_electrons)
     assert np.array_equal(first.variance, second.variance)
@@ -116,7 +121,7 @@ def test_the_same_flash_draws_the_same_light(engine_of, nadir):
 
 def test_isolated_pixels_see_less_than_flooded_ones(engine_of, nadir):
     """A neighbour's light adds to a flooded pixel: the bottom echo of 10 m coastal water."""
-    few = {"backward_walks_per_pixel": 32}
+    few = {"walks_per_pixel": 32}
     flood = engine_of(**few).flash(pose=nadir, frame=2).photo_electrons
     isolated = engine_of(illumination="isolated", **few).flash(pose=nadir, frame=2).photo_electrons
     gain = flood[2].sum() / isolated[2].sum()
@@ -126,18 +131,29 @@ def test_isolated_pixels_see_less_than_flooded_ones(engine_of, nadir):
 
 def test_still_water_is_a_mirror(engine_of, nadir):
     """I0 rho A / (2 H)^2 in the four pixels that touch nadir, I0 launched per steradian down."""
-    engine = engine_of(wind_speed=0.0, backward_walks_per_pixel=8, forward_walks_per_m2=1.0)
+    engine = engine_of(wind_speed=0.0, walks_per_pixel=8)
     surface = engine.flash(pose=nadir, frame=0).origin("surface").sum(axis=-1)
     intensity = engine.photo_electrons / (0.512 * 0.256)
     rho = ((INDEX - 1.0) / (INDEX + 1.0)) ** 2
     closed = intensity * rho * engine.receiver.aperture_area / (2.0 * HEIGHT) ** 2
-    assert surface.sum() == pytest.approx(closed, rel=1e-6)
+    assert surface.sum() == pytest.approx(closed, rel=1e-4)
     assert surface[15:17, 31:33].sum() == surface.sum()
+
+
+@pytest.mark.parametrize(("roll", "pitch"), [(3.0, 1.0), (0.7, -4.0), (-2.0, 5.0)])
+def test_the_mirror_s_image_is_seen_at_nadir(engine_of, nadir, roll, pitch):
+    """All of it in the pixel whose ray points straight down, however the sensor is turned."""
+    engine = engine_of(wind_speed=0.0, walks_per_pixel=8)
+    pose = replace(nadir, roll=np.radians(roll), pitch=np.radians(pitch), heading=1.0)
+    surface = engine.flash(pose=pose, frame=0).origin("surface").sum(axis=-1)
+    straight_down = pixel_rays(camera=engine.camera, pose=pose)[..., 2].argmin()
+    assert surface.argmax() == straight_down
+    assert surface.max() == surface.sum() > 0.0
 
 
 def test_deeper_is_later_and_on_its_side(engine_of, nadir):
     """The bottom falls to the east; flying north, rows 16 to 31 look to the right: east."""
-    engine = engine_of(gradient=0.05, wind_speed=0.0, backward_walks_per_pixel=16)
+    engine = engine_of(gradient=0.05, wind_speed=0.0, walks_per_pixel=16)
     flash = engine.flash(pose=nadir, frame=0)
     echo = flash.origin("bottom")[:, 24:40]
     centroid = (echo * flash.times).sum(axis=(1, 2)) / echo.sum(axis=(1, 2))

@@ -6,11 +6,18 @@ import math
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 from survey.optics.interface import fresnel_reflectance, reflected, refracted, transmitted_cosine
-from survey.transport.random import mixed
 from survey.transport.scene import kernel_sea
-from survey.transport.surface import enter_water, facet_normal, glint_per_steradian
+from survey.transport.surface import (
+    NORMAL_QUANTILES,
+    drawn_normal,
+    enter_water,
+    facing_from_below,
+    glint_per_steradian,
+)
+from terrain.kernels import kernel
 from terrain.sea_surface import SeaSurface
 
 INDEX = 1.34
@@ -56,59 +63,98 @@ def test_reflection_keeps_the_angle():
     assert out == pytest.approx((0.6, 0.0, -0.8))
 
 
+@kernel
+def facets(sea, quantiles, count):
+    """Draw the normals of many facets, (count, 3)."""
+    state, normals = np.array([3, 5], np.uint64), np.empty((count, 3))
+    for i in range(count):
+        normals[i] = drawn_normal(sea, quantiles, state)
+    return normals
+
+
+def drawn_facets(count, **wind):
+    """Return a sea and normals of its facets."""
+    surface = SeaSurface.from_wind(level=0.0, **wind)
+    return surface, facets(kernel_sea(surface), NORMAL_QUANTILES, count)
+
+
 def test_facets_have_the_sea_s_slopes():
-    """Mean and variance of 200,000 facets: 4 standard errors; wind from the east."""
-    surface = SeaSurface.from_wind(
-        level=0.0, wind_speed=10.0, wind_from=math.pi / 2, correlation_length=0.1
-    )
-    sea = kernel_sea(surface, key=7)
-    normals = np.array(
-        [facet_normal(sea, 0.1 * i + 0.05, 0.1 * j + 0.05) for i in range(500) for j in range(400)]
-    )
+    """Mean, variance and covariance of 200,000 facets: 4 standard errors; wind from the east."""
+    surface, normals = drawn_facets(200_000, wind_speed=10.0, wind_from=math.pi / 2)
     slope = -normals[:, :2] / normals[:, 2:]
     expected = np.array([surface.upwind_slope_variance, surface.crosswind_slope_variance])
     count = len(slope)
     assert np.all(np.abs(slope.mean(axis=0)) < 4.0 * np.sqrt(expected / count))
     assert np.all(np.abs(slope.var(axis=0) / expected - 1.0) < 4.0 * math.sqrt(2.0 / count))
+    assert abs(np.corrcoef(slope.T)[0, 1]) < 4.0 / count**0.5
+    assert np.linalg.norm(normals, axis=1) == pytest.approx(1.0, abs=1e-14)
 
 
-def test_one_facet_is_one_slope():
-    sea = kernel_sea(
-        SeaSurface.from_wind(level=0.0, wind_speed=5.0, wind_from=0.0, correlation_length=0.5),
-        key=int(mixed(np.uint64(3))) % 2**63,
-    )
-    assert facet_normal(sea, 0.1, 0.1) == facet_normal(sea, 0.4, 0.49)
-    assert facet_normal(sea, 0.1, 0.1) != facet_normal(sea, -0.1, 0.1)
+def test_slopes_are_gaussian():
+    """Fourth moment 3 and the share beyond two deviations, 4 standard errors of 200,000."""
+    surface, normals = drawn_facets(200_000, wind_speed=10.0, wind_from=math.pi / 2)
+    scaled = normals[:, 0] / normals[:, 2] / surface.upwind_slope_variance**0.5
+    assert abs((scaled**4).mean() - 3.0) < 4.0 * math.sqrt(96.0 / len(scaled))
+    outside = 2.0 * norm.sf(2.0)
+    error = math.sqrt(outside * (1.0 - outside) / len(scaled))
+    assert abs((np.abs(scaled) > 2.0).mean() - outside) < 4.0 * error
 
 
-def test_facets_catch_the_light_once_on_average():
+def test_the_wind_s_direction_turns_the_slopes():
+    """Wind from the north-east: the steep slopes lie along it, the covariance is half of
+    upwind less crosswind variance."""
+    surface, normals = drawn_facets(200_000, wind_speed=10.0, wind_from=math.pi / 4)
+    slope = -normals[:, :2] / normals[:, 2:]
+    apart = surface.upwind_slope_variance - surface.crosswind_slope_variance
+    assert np.cov(slope.T)[0, 1] == pytest.approx(0.5 * apart, rel=0.05)
+
+
+def test_still_water_is_exactly_level():
+    _, normals = drawn_facets(100, wind_speed=0.0, wind_from=1.0)
+    assert np.array_equal(normals, np.tile([0.0, 0.0, 1.0], (100, 1)))
+
+
+@pytest.mark.parametrize("degrees", [2.0, 15.0, 40.0])
+def test_facets_catch_the_light_once_on_average(degrees):
     """The mean facet weight of a slanting ray is one: 4 standard errors of 40,000 facets."""
-    sea = kernel_sea(
-        SeaSurface.from_wind(level=0.0, wind_speed=5.0, wind_from=0.3, correlation_length=0.1),
-        key=11,
-    )
-    ray = (0.25, 0.0, -math.sqrt(1 - 0.25**2))
-    caught = np.array(
-        [
-            enter_water(sea, INDEX, 0.1 * i + 0.05, 0.1 * j + 0.05, *ray)[3]
-            for i in range(200)
-            for j in range(200)
-        ]
-    )
+    _, normals = drawn_facets(40_000, wind_speed=5.0, wind_from=0.3)
+    angle = math.radians(degrees)
+    ray = (math.sin(angle), 0.0, -math.cos(angle))
+    caught = np.array([enter_water(INDEX, *ray, *normal)[3] for normal in normals])
     assert abs(caught.mean() - 1.0) < 4.0 * caught.std() / 200.0
+
+
+def test_a_ray_enters_by_snell_and_fresnel_at_its_facet():
+    """The refracted ray lies in the plane of ray and facet, its sine smaller by the index."""
+    _, (normal,) = drawn_facets(1, wind_speed=10.0, wind_from=0.3)
+    ray = np.array([0.3, -0.1, -math.sqrt(0.9)])
+    *inside, caught, reflectance = enter_water(INDEX, *ray, *normal)
+    assert np.cross(inside, normal) * INDEX == pytest.approx(np.cross(ray, normal), abs=1e-14)
+    assert caught == pytest.approx(-ray @ normal / (-ray[2] * normal[2]), rel=1e-12)
+    assert reflectance == fresnel_reflectance(-ray @ normal, 1.0 / INDEX)
+
+
+def test_a_ray_from_behind_catches_nothing():
+    assert enter_water(INDEX, 0.8, 0.0, -0.6, 0.8, 0.0, 0.6)[3:] == (0.0, 0.0)
+
+
+def test_rising_rays_meet_facets_that_throw_them_down():
+    """A facet that a rising ray would miss, or that would send it up again, counts as level."""
+    level = (0.0, 0.0, 1.0)
+    tilted = (math.sin(0.3), 0.0, math.cos(0.3))
+    assert facing_from_below(0.0, 0.0, 1.0, *tilted) == tilted
+    assert facing_from_below(-0.99, 0.0, math.sqrt(1 - 0.99**2), *tilted) == level
+    assert facing_from_below(math.cos(0.2), 0.0, math.sin(0.2), *tilted) == tilted
+    assert facing_from_below(-math.sin(1.2), 0.0, math.cos(1.2), *tilted) == level
 
 
 def test_glint_equals_the_closed_form():
     """Isotropic: rho exp(-tan^2 t / s2) / (4 pi s2 cos^5 t), per incident power."""
     variance = 0.014
     surface = SeaSurface(
-        level=0.0,
-        upwind_slope_variance=variance,
-        crosswind_slope_variance=variance,
-        wind_from=0.4,
-        correlation_length=0.1,
+        level=0.0, upwind_slope_variance=variance, crosswind_slope_variance=variance, wind_from=0.4
     )
-    sea, rho = kernel_sea(surface, key=1), ((INDEX - 1) / (INDEX + 1)) ** 2
+    sea, rho = kernel_sea(surface), ((INDEX - 1) / (INDEX + 1)) ** 2
     for degrees in (0.0, 5.0, 14.4):
         angle = math.radians(degrees)
         ray = (math.sin(angle) * 0.6, math.sin(angle) * 0.8, -math.cos(angle))
@@ -137,11 +183,7 @@ def test_glint_against_facets():
     rho = ((INDEX - 1) / (INDEX + 1)) ** 2
     drawn = rho * weight[hits].sum() / len(slopes) / (2 * math.pi * (1 - math.cos(cone)))
     surface = SeaSurface(
-        level=0.0,
-        upwind_slope_variance=up,
-        crosswind_slope_variance=cross,
-        wind_from=math.pi / 2,
-        correlation_length=0.1,
+        level=0.0, upwind_slope_variance=up, crosswind_slope_variance=cross, wind_from=math.pi / 2
     )
-    closed = glint_per_steradian(kernel_sea(surface, key=1), INDEX, *ray)
+    closed = glint_per_steradian(kernel_sea(surface), INDEX, *ray)
     assert drawn / closed == pytest.approx(1.0, abs=0.015)

@@ -9,6 +9,9 @@ import pytest
 
 from survey.optics.water import petzold_water
 from survey.transport.response import response
+from survey.transport.response_column import column_batches
+from survey.transport.response_echo import echo_batches
+from survey.transport.response_walks import FLOOD, ISOLATED, Footprint
 from survey.transport.slab import slab
 
 
@@ -104,6 +107,93 @@ def test_one_percent_error(coastal):
     for found in coastal.values():
         assert np.all(found.column_sem < 0.012 * found.column)
         assert found.two_way.sem < 0.01 * found.two_way.value
+
+
+@pytest.fixture(scope="module")
+def echo():
+    """Two-way transmission of coastal water (batches, 2, depths) by one set of walks."""
+    found = echo_batches(
+        water=water(),
+        footprint=Footprint(side=2.0, growth=0.0),
+        depths=np.array([4.0, 10.0, 25.0]),
+        bins=200,
+        bin_width=0.5,
+        seed=2,
+        walks=2000,
+        threads=2,
+    )
+    return found.sum(axis=-1)
+
+
+@pytest.mark.parametrize(("way", "which"), [("flood", FLOOD), ("isolated", ISOLATED)])
+def test_echoes_of_many_depths_at_once(echo, way, which):
+    """The bottom at 10 m is as if it were the only one; both errors counted, within 1.5 %."""
+    at_10 = echo[:, which, 1]
+    expected = INDEPENDENT[way]["bottom"][0]
+    assert at_10.mean() == pytest.approx(expected, rel=0.015)
+    assert at_10.std(ddof=1) / 8.0 < 0.004 * expected
+
+
+def test_a_lone_depth_is_as_one_of_many(echo):
+    """Where walks pass a depth on their way further down, they are the walks that end there."""
+    alone = echo_batches(
+        water=water(),
+        footprint=Footprint(side=2.0, growth=0.0),
+        depths=np.array([4.0]),
+        bins=200,
+        bin_width=0.5,
+        seed=2,
+        walks=2000,
+        batches=8,
+    )
+    assert alone.sum(axis=-1)[:, :, 0] == pytest.approx(echo[:8, :, 0], rel=1e-9)
+
+
+def columns(**changes):
+    sizes = {"footprint": Footprint(side=2.0, growth=0.0), "bins": 12, "bin_width": 1.0}
+    few = {"blocks": 8, "batches": 8, "seed": 5}
+    return column_batches(**({"water": water()} | sizes | few | changes))
+
+
+def test_a_footprint_that_grows():
+    """At each depth it is the square of that side, so between somewhat less and the deepest one."""
+    growing = columns(footprint=Footprint(side=1.0, growth=0.2)).mean(axis=0)[ISOLATED]
+    for number in (3, 8):
+        less, most = (
+            columns(footprint=Footprint(side=1.0 + 0.2 * depth, growth=0.0)).mean(axis=0)[ISOLATED]
+            for depth in (number - 1.5, number + 1.0)
+        )
+        assert less[number] < growing[number] < most[number]
+
+
+def test_an_endless_footprint_is_the_flood():
+    endless = columns(footprint=Footprint(side=1e9, growth=0.0))
+    assert endless[:, ISOLATED] == pytest.approx(endless[:, FLOOD], rel=1e-6, abs=0.0)
+
+
+def test_threads_change_nothing():
+    assert np.array_equal(columns(threads=1), columns(threads=3))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "depth"), [("coastal", 24), ("harbor", 8)])
+def test_deep_columns_do_not_depend_on_the_split_angle(name, depth):
+    """Isolated and flood at the paper's depths: 20, 30 and 45 degrees agree within 3.4 sigma."""
+    found = []
+    for angle in (20.0, 30.0, 45.0):
+        batches = columns(
+            water=water(name),
+            bins=depth + 2,
+            split_angle=math.radians(angle),
+            blocks=200,
+            batches=64,
+            threads=2,
+        )[:, :, depth]
+        found.append((batches.mean(axis=0), batches.std(axis=0, ddof=1) / 8.0))
+    for mean, sem in found[:2]:
+        spread = np.hypot(sem, found[2][1])
+        assert np.all(np.abs(mean - found[2][0]) < 3.4 * spread)
+        assert np.all(spread < 0.08 * mean)
 
 
 def test_bad_input_comes_all_at_once():

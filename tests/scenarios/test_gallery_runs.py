@@ -15,7 +15,7 @@ from survey.preparation import Mission, prepare
 from survey.scenario.load import load_scenario
 
 FloatArray = NDArray[np.float64]
-LESS_WORK = {"transport.forward_walks_per_m2": 8.0, "transport.backward_walks_per_pixel": 32}
+LESS_WORK = {"transport.walks_per_pixel": 32}
 BOTTOM = (PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT)
 
 

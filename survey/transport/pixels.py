@@ -1,0 +1,361 @@
+"""Pixel by pixel: walks back through the sea, lit by the laser, and their sum as a waveform."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.constants import speed_of_light
+
+from survey.optics.interface import fresnel_reflectance, reflected
+from survey.transport.beam import light_on_water
+from survey.transport.directions import lambert_direction
+from survey.transport.launch import Optics, direction_of, fraction
+from survey.transport.light_paths import (
+    ROULETTE_BELOW,
+    ROULETTE_SURVIVAL,
+    Method,
+    Place,
+    Sight,
+    send_light,
+)
+from survey.transport.random import PIXELS, start_stream, uniform
+from survey.transport.scene import Medium, Scene
+from survey.transport.surface import drawn_normal, enter_water, facing_from_below
+from survey.transport.tally import BOTTOM, Tally, add_up, clear, deposit, tell_variance
+from survey.transport.tracks import Tracks, axes_around, chosen
+from terrain.kernels import inlined_kernel, leaf_kernel
+from terrain.raycast import first_hit
+
+# Roberts (2018): additive recurrences of low discrepancy in one and two dimensions.
+GOLDEN = 0.6180339887498949
+PLASTIC_1, PLASTIC_2 = 0.7548776662466927, 0.5698402909980532
+BOUNCE_CHANCE = 0.25
+LIFT = 1e-7
+
+LAUNCHED, FACETS, REFLECTED, ABSORBED, ESCAPED, ASIDE, LATE, SEABED, ROULETTE = range(9)
+LEDGER_NAMES = (
+    "launched",
+    "facet weighting",
+    "reflected at the surface",
+    "absorbed by water",
+    "escaped through the surface",
+    "left sideways",
+    "later than the gate",
+    "absorbed by the bottom",
+    "roulette",
+)
+
+
+class Touch(NamedTuple):
+    """Where a walk met the bottom; ``face`` is -1 when it did not."""
+
+    face: int
+    x: float
+    y: float
+    z: float
+    dx: float
+    dy: float
+    dz: float
+    path: float
+    weight: float
+
+
+class Address(NamedTuple):
+    """Which random numbers a flash draws."""
+
+    seed: int
+    frame: int
+
+
+@leaf_kernel
+def facing_normal(
+    scene: Scene, face: int, dx: float, dy: float, dz: float
+) -> tuple[float, float, float]:
+    """Unit normal of a face on the side that a ray comes from."""
+    normals = scene.grid.normals
+    nx, ny, nz = normals[face, 0], normals[face, 1], normals[face, 2]
+    if nx * dx + ny * dy + nz * dz > 0.0:
+        return -nx, -ny, -nz
+    return nx, ny, nz
+
+
+@leaf_kernel
+def walk_back(
+    scene: Scene,
+    medium: Medium,
+    method: Method,
+    tracks: Tracks,
+    tally: Tally,
+    which: int,
+    track: int,
+    start: Touch,
+    limit: float,
+    noting: bool,
+    state: NDArray[np.uint64],
+) -> Touch:
+    """Follow a walk along tracks until it touches the bottom, escapes, leaves or is too late.
+
+    The weight does not hold the absorption, which the path tells. While ``noting``, legs are
+    noted up to the first scattering by more than the split angle, and no roulette is played.
+    """
+    ledger, sea = tally.ledger, scene.sea
+    _, x, y, z, dx, dy, dz, path, weight = start
+    ax, ay, az, bx, by, bz = axes_around(dx, dy, dz, method.circle, state)
+    cx, cy, cz = dx, dy, dz
+    k, fate = 0, LATE
+    optical = tracks.legs[which, track, 0, 3]
+    unabsorbed = weight * math.exp(-medium.attenuation * path)
+    while True:
+        row = tracks.legs[which, track, k]
+        dx = row[0] * ax + row[1] * bx + row[2] * cx
+        dy = row[0] * ay + row[1] * by + row[2] * cy
+        dz = row[0] * az + row[1] * bz + row[2] * cz
+        length = min(optical / medium.scattering, limit - path)
+        surfaced = dz > 0.0 and sea.level - z < dz * length
+        if surfaced:
+            length = (sea.level - z) / dz
+        face = -1
+        if min(z, z + dz * length) <= scene.bounds.highest:
+            to_bottom, face = first_hit(scene.grid, x, y, z, dx, dy, dz, length)
+            if face >= 0:
+                length = to_bottom
+        if noting:
+            i = tally.noted[0]
+            if i < tally.back.shape[0]:
+                leg = tally.back[i]
+                leg[0], leg[1], leg[2], leg[3] = x, y, z, dx
+                leg[4], leg[5], leg[6], leg[7] = dy, dz, length, path
+                tally.noted[0] = i + 1
+        x, y, z, path = x + dx * length, y + dy * length, z + dz * length, path + length
+        if face >= 0:
+            kept = weight * math.exp(-medium.attenuation * path)
+            ledger[ABSORBED] += unabsorbed - kept
+            return Touch(face, x, y, z, dx, dy, dz, path, weight)
+        if path >= limit:
+            break
+        if not (
+            scene.bounds.west < x < scene.bounds.east
+            and scene.bounds.south < y < scene.bounds.north
+        ):
+            fate = ASIDE
+            break
+        if surfaced:
+            z = sea.level
+            mx, my, mz = drawn_normal(sea, method.quantiles, state)
+            mx, my, mz = facing_from_below(dx, dy, dz, mx, my, mz)
+            cosine = dx * mx + dy * my + dz * mz
+            if uniform(state) >= fresnel_reflectance(cosine, medium.refractive_index):
+                fate = ESCAPED
+                break
+            ax, ay, az = reflected(ax, ay, az, mx, my, mz)
+            bx, by, bz = reflected(bx, by, bz, mx, my, mz)
+            cx, cy, cz = reflected(cx, cy, cz, mx, my, mz)
+            optical -= length * medium.scattering
+            continue
+        k += 1
+        tally.noted[1] += 1
+        if k == tracks.legs.shape[2]:
+            kept = weight * math.exp(-medium.attenuation * path)
+            if not noting and kept < ROULETTE_BELOW:
+                ledger[ABSORBED] += unabsorbed - kept
+                if uniform(state) >= ROULETTE_SURVIVAL:
+                    ledger[ROULETTE] += kept
+                    return Touch(-1, x, y, z, dx, dy, dz, path, 0.0)
+                weight /= ROULETTE_SURVIVAL
+                unabsorbed = kept / ROULETTE_SURVIVAL
+                ledger[ROULETTE] += kept - unabsorbed
+            ax, ay, az, bx, by, bz = axes_around(dx, dy, dz, method.circle, state)
+            cx, cy, cz = dx, dy, dz
+            track, k = int(uniform(state) * tracks.legs.shape[1]), 1
+        noting = noting and k != tracks.first_wide[which, track]
+        optical = tracks.legs[which, track, k, 3]
+    kept = weight * math.exp(-medium.attenuation * path)
+    ledger[ABSORBED] += unabsorbed - kept
+    ledger[fate] += kept
+    return Touch(-1, x, y, z, dx, dy, dz, path, 0.0)
+
+
+@leaf_kernel
+def see_land(
+    scene: Scene, optics: Optics, method: Method, tally: Tally, sight: Sight, touch: Touch
+) -> None:
+    """Light dry land where the pixel sees it: the laser's ray is the pixel's."""
+    nx, ny, nz = facing_normal(scene, touch.face, touch.dx, touch.dy, touch.dz)
+    facing = -(touch.dx * nx + touch.dy * ny + touch.dz * nz)
+    light = light_on_water(optics, touch.z, touch.x, touch.y, sight.pixel, method.isolated)
+    gain = scene.reflectance[touch.face] / math.pi * sight.importance
+    deposit(
+        tally, BOTTOM, sight.batch, 2.0 * touch.path / speed_of_light,
+        method.photons * light * facing / -touch.dz * gain,
+    )  # fmt: skip
+
+
+@inlined_kernel
+def see_bottom(
+    scene: Scene,
+    medium: Medium,
+    optics: Optics,
+    method: Method,
+    tracks: Tracks,
+    tally: Tally,
+    sight: Sight,
+    start: Touch,
+    back: float,
+    down: float,
+    state: NDArray[np.uint64],
+) -> None:
+    """Walk back from under the surface, from touch to touch of the bottom, and light it all."""
+    height = optics.position[2] - scene.sea.level
+    limit = (scene.bounds.latest - sight.time - height / speed_of_light) * medium.speed
+    tally.noted[0], entered, which = 0, start.weight, 2 * sight.batch
+    back_track, back_weight = chosen(tracks, which + 1, back)
+    down_track, down_weight = chosen(tracks, which, down)
+    touches = 0
+    while True:
+        touch = walk_back(
+            scene, medium, method, tracks, tally, which + 1, back_track, start, limit,
+            touches == 0, state,
+        )  # fmt: skip
+        nx, ny, nz, rho = 0.0, 0.0, 1.0, 0.0
+        x, y, z = start.x, start.y, start.z
+        if touch.face >= 0:
+            rho = scene.reflectance[touch.face]
+            nx, ny, nz = facing_normal(scene, touch.face, touch.dx, touch.dy, touch.dz)
+            x, y, z = touch.x, touch.y, touch.z
+        elif touches > 0:
+            return
+        gain = sight.importance * touch.weight / entered * rho / math.pi
+        send_light(
+            scene, medium, optics, method, tracks, tally, sight,
+            Place(x, y, z, nx, ny, nz, touch.path, gain), down_track, back_weight * down_weight,
+            touches == 0, state,
+        )  # fmt: skip
+        if touch.face < 0:
+            return
+        touches += 1
+        kept = touch.weight * math.exp(-medium.attenuation * touch.path)
+        tally.ledger[SEABED] += kept * (1.0 - rho)
+        kept *= rho
+        if uniform(state) >= BOUNCE_CHANCE:
+            tally.ledger[ROULETTE] += kept
+            return
+        tally.ledger[ROULETTE] += kept * (1.0 - 1.0 / BOUNCE_CHANCE)
+        dx, dy, dz = lambert_direction(nx, ny, nz, state)
+        start = Touch(
+            -1, x + nx * LIFT, y + ny * LIFT, z + nz * LIFT, dx, dy, dz,
+            touch.path, touch.weight * rho / BOUNCE_CHANCE,
+        )  # fmt: skip
+        back_track = int(uniform(state) * tracks.legs.shape[1])
+        down_track, down_weight = chosen(tracks, which, uniform(state))
+
+
+@inlined_kernel
+def see(
+    scene: Scene,
+    medium: Medium,
+    optics: Optics,
+    method: Method,
+    tracks: Tracks,
+    tally: Tally,
+    pixel: int,
+    batch: int,
+    in_rows: float,
+    in_columns: float,
+    back: float,
+    down: float,
+    state: NDArray[np.uint64],
+) -> None:
+    """Send one walk from a pixel, through the aperture and the air, to land or into the water.
+
+    ``in_rows`` and ``in_columns`` say where in the field of view it looks, from 0 to 1. The etendue
+    of a direction is aperture area x cos^4 (to boresight) x tangent-plane area.
+    """
+    row, column = 2.0 * in_rows - 1.0, 2.0 * in_columns - 1.0
+    if optics.columns_forward:
+        forward, right = -column * optics.half_forward, row * optics.half_right
+    else:
+        forward, right = -row * optics.half_forward, column * optics.half_right
+    dx, dy, dz, cosine = direction_of(optics, forward, right)
+    ahead = aside = 1.0
+    while ahead * ahead + aside * aside >= 1.0:
+        ahead, aside = 2.0 * uniform(state) - 1.0, 2.0 * uniform(state) - 1.0
+    ahead, aside = ahead * optics.aperture_radius, aside * optics.aperture_radius
+    t = optics.turn
+    x = optics.position[0] + t[0, 0] * ahead + t[0, 1] * aside
+    y = optics.position[1] + t[1, 0] * ahead + t[1, 1] * aside
+    z = optics.position[2] + t[2, 0] * ahead + t[2, 1] * aside
+    ledger = tally.ledger
+    ledger[LAUNCHED] += 1.0
+    if dz >= 0.0:
+        ledger[REFLECTED] += 1.0
+        return
+    solid = 4.0 * optics.half_forward * optics.half_right / (optics.rows * optics.columns)
+    importance = math.pi * optics.aperture_radius**2 * solid * cosine**4 / method.walks
+    level = scene.sea.level
+    length = (level - z) / dz
+    to_land, face = math.inf, -1
+    if scene.bounds.highest > level:
+        to_land, face = first_hit(scene.grid, x, y, z, dx, dy, dz, length)
+    if face >= 0:
+        x, y, z = x + dx * to_land, y + dy * to_land, z + dz * to_land
+        sight = Sight(pixel, batch, 0.0, importance)
+        touch = Touch(face, x, y, z, dx, dy, dz, to_land, 1.0)
+        see_land(scene, optics, method, tally, sight, touch)
+        ledger[REFLECTED] += 1.0
+        return
+    x, y = x + dx * length, y + dy * length
+    mx, my, mz = drawn_normal(scene.sea, method.quantiles, state)
+    dx, dy, dz, caught, reflectance = enter_water(medium.refractive_index, dx, dy, dz, mx, my, mz)
+    ledger[FACETS] += caught - 1.0
+    ledger[REFLECTED] += caught * reflectance
+    weight = caught * (1.0 - reflectance)
+    if weight <= 0.0 or dz >= 0.0:
+        ledger[ESCAPED] += weight
+        return
+    sight = Sight(pixel, batch, length / speed_of_light, importance * weight * gain_of(medium))
+    start = Touch(-1, x, y, level, dx, dy, dz, 0.0, weight)
+    see_bottom(scene, medium, optics, method, tracks, tally, sight, start, back, down, state)
+
+
+@leaf_kernel
+def gain_of(medium: Medium) -> float:
+    """Radiance falls by n^2 as light leaves the water [1]."""
+    return 1.0 / (medium.refractive_index * medium.refractive_index)
+
+
+@leaf_kernel
+def see_all(
+    scene: Scene,
+    medium: Medium,
+    optics: Optics,
+    method: Method,
+    tracks: Tracks,
+    tally: Tally,
+    address: Address,
+    state: NDArray[np.uint64],
+    mean: NDArray[np.float32],
+    variance: NDArray[np.float32],
+) -> None:
+    """Fill ``mean`` and ``variance`` (2, pixels, bins) with column and bottom."""
+    for pixel in range(mean.shape[1]):
+        clear(tally)
+        row, column = pixel // optics.columns, pixel % optics.columns
+        for batch in range(tally.coarse.shape[0]):
+            start_stream(state, address.seed, PIXELS, address.frame, batch, pixel)
+            shift_1, shift_2 = uniform(state), uniform(state)
+            shift_3, shift_4 = uniform(state), uniform(state)
+            for i in range(method.walks):
+                see(
+                    scene, medium, optics, method, tracks, tally, pixel, batch,
+                    (row + fraction(shift_1 + i * PLASTIC_1)) / optics.rows,
+                    (column + fraction(shift_2 + i * PLASTIC_2)) / optics.columns,
+                    fraction(shift_3 + i / method.walks),
+                    fraction(shift_4 + i * GOLDEN),
+                    state,
+                )  # fmt: skip
+        for origin in range(2):
+            add_up(tally, origin, pixel, mean)
+            tell_variance(tally, origin, pixel, mean, variance)

@@ -1,0 +1,146 @@
+"""What the light paths of one pixel add up to, and how sure that is."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from terrain.kernels import leaf_kernel
+
+COLUMN, BOTTOM = 0, 1
+
+
+class TimeBins(NamedTuple):
+    """Evenly spaced bins, named by the first one's early edge."""
+
+    start: float
+    width: float
+    number: int
+
+
+class Tally(NamedTuple):
+    """Notes of the pixel at work; they are used again for the next.
+
+    ``fine`` (2, bins) are photons of column and bottom, all replicates together; ``coarse``
+    (replicates, 2, bins) each replicate's own in bins of ``width`` fine ones. ``down`` (legs, 7)
+    are the legs of the track of light: place relative to where it entered, with the depth,
+    direction, length; ``back`` (legs, 8) those of the walk from the pixel before its first turn:
+    place, direction, length, path before. ``noted[0]`` counts the latter, ``noted[1]`` all
+    scatterings. ``taps`` and ``coarse_taps`` are the pulse in both kinds of bins, ``rows`` (3,
+    coarse bins and as many as the pulse reaches) room to work.
+    """
+
+    bins: TimeBins
+    width: int
+    fine: NDArray[np.float32]
+    coarse: NDArray[np.float32]
+    down: NDArray[np.float64]
+    back: NDArray[np.float64]
+    noted: NDArray[np.int64]
+    ledger: NDArray[np.float64]
+    taps: NDArray[np.float32]
+    coarse_taps: NDArray[np.float32]
+    rows: NDArray[np.float32]
+
+
+@leaf_kernel
+def deposit(tally: Tally, origin: int, batch: int, time: float, photons: float) -> None:
+    """Share photons between the two bins whose centres enclose a time, which keeps the centroid."""
+    bins = tally.bins
+    place = (time - bins.start) / bins.width - 0.5
+    low = int(np.floor(place))
+    if not 0 <= low < bins.number - 1:
+        return
+    late = photons * (place - low)
+    tally.fine[origin, low] += photons - late
+    tally.fine[origin, low + 1] += late
+    tally.coarse[batch, origin, int(place + 0.5) // tally.width] += photons
+
+
+@leaf_kernel
+def clear(tally: Tally) -> None:
+    """Make room for another pixel."""
+    tally.fine[:] = 0.0
+    tally.coarse[:] = 0.0
+
+
+@leaf_kernel
+def lit_bins(tally: Tally, origin: int) -> tuple[int, int]:
+    """First bin with photons and the bin after the last; 0, 0 if all is dark."""
+    first, last = 0, tally.fine.shape[1]
+    while last > 0 and tally.fine[origin, last - 1] == 0.0:
+        last -= 1
+    while first < last and tally.fine[origin, first] == 0.0:
+        first += 1
+    return first, last
+
+
+@leaf_kernel
+def add_up(tally: Tally, origin: int, pixel: int, mean: NDArray[np.float32]) -> None:
+    """Write the photons of an origin to its pixel's row, the pulse's width included."""
+    taps, bins = tally.taps, mean.shape[2]
+    scale = np.float32(1.0 / tally.coarse.shape[0])
+    first, last = lit_bins(tally, origin)
+    for i in range(bins):
+        mean[origin, pixel, i] = 0.0
+    for tap in range(taps.shape[0]):
+        share = taps[tap] * scale
+        for i in range(max(first - tap, 0), min(last - tap, bins)):
+            mean[origin, pixel, i] += share * tally.fine[origin, i + tap]
+
+
+@leaf_kernel
+def tell_variance(
+    tally: Tally,
+    origin: int,
+    pixel: int,
+    mean: NDArray[np.float32],
+    variance: NDArray[np.float32],
+) -> None:
+    """Write the squared standard error of a pixel's row of ``mean``, the mean of the replicates.
+
+    The relative error is told in coarse bins, within which the pulse makes all fine ones rise and
+    fall together, and goes over evenly from the middle of one to the next.
+    """
+    coarse, taps, rows = tally.coarse, tally.coarse_taps, tally.rows
+    replicates, pad, reach = coarse.shape[0], tally.taps.shape[0] // 2, taps.shape[0]
+    first, last = lit_bins(tally, origin)
+    first, last = first // tally.width, (last - 1) // tally.width + 1
+    rows[:] = 0.0
+    for batch in range(replicates):
+        for i in range(first, last + reach):
+            rows[2, i] = 0.0
+        for tap in range(reach):
+            for i in range(first, last):
+                rows[2, i + tap] += taps[tap] * coarse[batch, origin, i]
+        for i in range(first, last + reach):
+            rows[0, i] += rows[2, i]
+            rows[1, i] += rows[2, i] * rows[2, i]
+    share, scale = np.float32(1.0 / replicates), np.float32(replicates / (replicates - 1.0))
+    rows[2] = 0.0
+    for i in range(first, last + reach):
+        squared = rows[0, i] * rows[0, i]
+        if squared > 0.0:
+            rows[2, i] = max(np.float32(0.0), rows[1, i] / squared - share) * scale
+    per_bin = 1.0 / tally.width
+    for i in range(variance.shape[2]):
+        place = (i + pad + 0.5) * per_bin - 0.5 + reach // 2
+        low = int(place)
+        relative = rows[2, low] + (place - low) * (rows[2, low + 1] - rows[2, low])
+        variance[origin, pixel, i] = mean[origin, pixel, i] * mean[origin, pixel, i] * relative
+
+
+@leaf_kernel
+def deposit_in(
+    histogram: NDArray[np.floating], pixel: int, bins: TimeBins, time: float, photons: float
+) -> None:
+    """Share photons between two bins of a pixel's row of a histogram, as `deposit` does."""
+    place = (time - bins.start) / bins.width - 0.5
+    low = int(np.floor(place))
+    part = place - low
+    if 0 <= low < bins.number:
+        histogram[pixel, low] += photons * (1.0 - part)
+    if 0 <= low + 1 < bins.number:
+        histogram[pixel, low + 1] += photons * part

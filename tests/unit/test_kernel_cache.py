@@ -1,0 +1,65 @@
+"""Compiled kernels are kept from run to run, and never outlive an edit of any of them."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from terrain import kernels
+
+CALLED = """
+from terrain.kernels import leaf_kernel
+
+@leaf_kernel
+def called(x):
+    return x + {added}
+"""
+CALLER = """
+from terrain.called import called
+from terrain.kernels import kernel
+
+@kernel
+def caller(x):
+    return called(x)
+"""
+TELL = """
+from terrain.caller import caller
+print(caller(1.0), sum(caller.stats.cache_hits.values()))
+"""
+
+
+@pytest.fixture
+def run(tmp_path):
+    """Run a caller in a process and a cache of its own; returns its result and its cache hits."""
+    room = tmp_path / "sources" / "terrain"
+    room.mkdir(parents=True)
+    (room / "__init__.py").touch()
+    shutil.copy(Path(kernels.__file__), room)
+    (room / "caller.py").write_text(CALLER)
+    places = {"PYTHONPATH": str(room.parent), "XDG_CACHE_HOME": str(tmp_path / "cache")}
+
+    def run_with(added: float) -> tuple[float, int]:
+        (room / "called.py").write_text(CALLED.format(added=added))
+        done = subprocess.run(
+            [sys.executable, "-c", TELL],
+            env=os.environ | places,
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        result, hits = done.stdout.split()
+        return float(result), int(hits)
+
+    return run_with
+
+
+def test_second_run_does_not_compile_and_an_edit_elsewhere_does(run):
+    assert run(added=1.0) == (2.0, 0)
+    assert run(added=1.0) == (2.0, 1)
+    assert run(added=5.0) == (6.0, 0)
