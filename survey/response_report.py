@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import io
+import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from survey.errors import UserError
 from survey.products.writing import write_whole
+from survey.scenario.faults import Fault, ScenarioError, did_you_mean
 
 if TYPE_CHECKING:
+    from survey.optics.phase import PhaseFunction
     from survey.optics.water import Water
     from survey.transport.response import Response
 
 INDEX = 1.33  # phase and group index, as in [Lisenko2017]; only two_way_10ns depends on it
+LARGEST_ATTENUATION = 25.0  # 2 K_d z: exp(-25) is 1.4e-11
+OPTION = "--phase-function"
+PICTURES = (".png", ".svg")
 
 
 def water_of(
@@ -23,43 +28,126 @@ def water_of(
     name: str | None,
     absorption: float | None,
     scattering: float | None,
-    phase_function: Path | None,
+    phase_function: str | None,
+    bottom_depth: float,
+    plot: Path | None = None,
 ) -> Water:
-    """Return a named water, or one of given coefficients [1/m] and phase function (a CSV table).
+    """Return the water that the options ask for, once all of them are sound.
+
+    Parameters
+    ----------
+    name : str, optional
+        A named water.
+    absorption, scattering : float, optional
+        Coefficients instead [1/m].
+    phase_function : str, optional
+        With them: a CSV table, a named water's, a kind of the scenario's `water.phase_function`, or
+        all of that key as TOML.
+    bottom_depth : float
+        So deep that some light comes back [m].
+    plot : Path, optional
+        A picture to be written.
 
     Raises
     ------
-    UserError
-        With every fault of the choice.
+    ScenarioError
+        With every fault of the options.
     """
-    from survey.optics.phase.table import read_phase_function
     from survey.optics.water import PAPER_COEFFICIENTS, Water, petzold_water
 
-    own = (absorption, scattering, phase_function)
-    faults = []
-    if (name is None) == all(value is None for value in own):
-        faults.append("response: give either --water or --a, --b and --phase-function")
-    if name is None and any(value is None for value in own):
-        faults.append("response: --a, --b and --phase-function go together")
+    faults = _fitting_faults(name, (absorption, scattering, phase_function))
     if name is not None and name not in PAPER_COEFFICIENTS:
-        faults.append(f"response: --water {name}: is none of {', '.join(PAPER_COEFFICIENTS)}")
-    for option, value in (("--a", absorption), ("--b", scattering)):
+        names = ", ".join(PAPER_COEFFICIENTS)
+        text = f"is none of {names}.{did_you_mean(name, PAPER_COEFFICIENTS)}"
+        faults.append(Fault(f"--water {name}", text))
+    options = (("--a", absorption), ("--b", scattering), ("--bottom-depth", bottom_depth))
+    for option, value in options:
         if value is not None and not (np.isfinite(value) and value > 0.0):
-            faults.append(f"response: {option} {value:g}: must be above 0")
-    if faults:
-        raise UserError("\n".join(faults))
+            faults.append(Fault(f"{option} {value:g}", "must be above 0 and finite."))
+    if plot is not None and plot.suffix.lower() not in PICTURES:
+        faults.append(Fault(f"--plot {plot}", f"writes {' or '.join(PICTURES)}. Choose one."))
+    phase, phase_faults = _phase_function(phase_function)
+    _require(faults + phase_faults)
     if name is not None:
-        return petzold_water(name, refractive_index=INDEX, group_index=INDEX)
-    assert absorption is not None
-    assert scattering is not None
-    assert phase_function is not None
-    return Water(
-        absorption=absorption,
-        scattering=scattering,
-        phase_function=read_phase_function(phase_function),
-        refractive_index=INDEX,
-        group_index=INDEX,
+        water = petzold_water(name, refractive_index=INDEX, group_index=INDEX)
+    else:
+        assert absorption is not None
+        assert scattering is not None
+        assert phase is not None
+        water = Water(
+            absorption=absorption,
+            scattering=scattering,
+            phase_function=phase,
+            refractive_index=INDEX,
+            group_index=INDEX,
+        )
+    _require(_beyond_the_light(water, bottom_depth))
+    return water
+
+
+def _fitting_faults(name: str | None, own: tuple[object, ...]) -> list[Fault]:
+    """Return whether either a name or all of a water's own properties are given."""
+    if (name is None) == all(value is None for value in own):
+        return [Fault("water", "give either --water or --a, --b and --phase-function.")]
+    if name is None and any(value is None for value in own):
+        return [Fault("water", "--a, --b and --phase-function go together.")]
+    return []
+
+
+def _require(faults: list[Fault]) -> None:
+    if faults:
+        raise ScenarioError("response", faults)
+
+
+def _phase_function(text: str | None) -> tuple[PhaseFunction | None, list[Fault]]:
+    """Return the phase function that an option's text means, or its faults."""
+    from survey.scenario.validate import validated
+    from survey.scenario.water_parts import build_phase_function
+    from survey.scenario.water_rules import phase_faults
+    from survey.scenario.water_sections import AnyPhase
+
+    if text is None:
+        return None, []
+    try:
+        section = validated(_as_table(text), AnyPhase, place=OPTION)
+    except ScenarioError as error:
+        return None, list(error.faults)
+    except tomllib.TOMLDecodeError as error:
+        return None, [Fault(OPTION, f"not valid TOML: {error}.")]
+    faults = list(phase_faults(section, OPTION, Path.cwd()))
+    return None if faults else build_phase_function(section, folder=Path.cwd()), faults
+
+
+def _as_table(text: str) -> Any:
+    """Return the plain table that stands for a file, a measured water, a kind, or TOML."""
+    from survey.optics.water import PAPER_COEFFICIENTS
+
+    if "{" in text:
+        return tomllib.loads(f"value = {text}")["value"]
+    if text in PAPER_COEFFICIENTS:
+        return {"kind": "petzold", "type": text}
+    is_file = Path(text).suffix or Path(text).is_file()
+    return {"kind": "table", "file": text} if is_file else text
+
+
+def _beyond_the_light(water: Water, bottom_depth: float) -> list[Fault]:
+    """Return the fault of a bottom from which too little comes back to be computed."""
+    from survey.optics.water.apparent import lee_diffuse_attenuation
+
+    sunlight = lee_diffuse_attenuation(
+        absorption=water.absorption,
+        backscattering=water.scattering * water.phase_function.backscatter_fraction,
+        sun_zenith=0.0,
     )
+    deepest = 0.5 * LARGEST_ATTENUATION / min(sunlight, water.attenuation)
+    if bottom_depth <= deepest:
+        return []
+    return [
+        Fault(
+            f"--bottom-depth {bottom_depth:g}",
+            f"beyond the light: from below {deepest:.3g} m less than 1e-11 of it comes back.",
+        )
+    ]
 
 
 def as_json(found: Response) -> dict[str, Any]:
@@ -103,17 +191,9 @@ def as_text(found: Response) -> str:
 
 
 def draw(path: Path, found: Response, *, title: str) -> None:
-    """Write a picture (PNG or SVG by the suffix) of the column, with the bottom's depth marked.
-
-    Raises
-    ------
-    UserError
-        When the suffix is neither.
-    """
+    """Write a picture (PNG or SVG by the suffix) of the column, with the bottom's depth marked."""
     from matplotlib.figure import Figure
 
-    if path.suffix.lower() not in (".png", ".svg"):
-        raise UserError(f"{path}: --plot writes .png or .svg. Choose one of them")
     figure = Figure(figsize=(7.0, 5.0), layout="constrained")
     axes = figure.subplots()
     middle = 0.5 * (found.bin_edges[:-1] + found.bin_edges[1:])

@@ -78,7 +78,7 @@ class RunFolder:
 
 def _manifest(scenario: Scenario, resolved: str) -> dict[str, Any]:
     """Return what makes a run this run."""
-    files = {name: _digest(scenario.folder / name) for name in _named_files(scenario)}
+    files = {name: _digest(scenario.folder / name) for name in scenario.files}
     return {
         "format": 1,
         "scenario_sha256": hashlib.sha256(resolved.encode()).hexdigest(),
@@ -98,13 +98,6 @@ def _found_manifest(path: Path) -> dict[str, Any] | None:
     except ValueError:
         return None
     return found if isinstance(found, dict) and "scenario_sha256" in found else None
-
-
-def _named_files(scenario: Scenario) -> Iterator[str]:
-    for part in (scenario.seabed, *scenario.seabed.objects):
-        name = getattr(part, "file", None)
-        if name is not None:
-            yield str(name)
 
 
 def _digest(path: Path) -> str:

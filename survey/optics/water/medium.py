@@ -1,4 +1,4 @@
-"""Optical properties of the water."""
+"""Uniform water as the transport takes it, and Petzold's three waters."""
 
 from __future__ import annotations
 
@@ -68,6 +68,7 @@ def petzold_water(
     group_index: float,
     absorption: float | None = None,
     scattering: float | None = None,
+    phase_function: PhaseFunction | None = None,
 ) -> Water:
     """Return one of Petzold's three waters, with the coefficients of [Lisenko2017] by default.
 
@@ -78,7 +79,9 @@ def petzold_water(
     refractive_index, group_index : float
         Phase and group index [1].
     absorption, scattering : float, optional
-        Other coefficients under the same phase function [1/m].
+        Other coefficients [1/m].
+    phase_function : PhaseFunction, optional
+        Another one than Petzold's.
 
     Examples
     --------
@@ -89,7 +92,7 @@ def petzold_water(
     return Water(
         absorption=paper_absorption if absorption is None else absorption,
         scattering=paper_scattering if scattering is None else scattering,
-        phase_function=petzold(name),
+        phase_function=petzold(name) if phase_function is None else phase_function,
         refractive_index=refractive_index,
         group_index=group_index,
     )

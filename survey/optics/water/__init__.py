@@ -1,0 +1,5 @@
+"""Water: the medium that the transport takes, and the ways to find its coefficients."""
+
+from survey.optics.water.medium import PAPER_COEFFICIENTS, Water, petzold_water
+
+__all__ = ["PAPER_COEFFICIENTS", "Water", "petzold_water"]
