@@ -62,7 +62,7 @@ def find_water(
     The level is the median elevation of the first echoes within 0.75 m of the expected level, or
     that level itself where there are fewer than 20. What lies more than 0.75 m above it is land.
     """
-    position = frame.pose.position
+    position = frame.measured.position
     places = place_in_air(position=position, rays=rays, time=first.time)
     elevation = places[..., 2]
     near = np.abs(elevation - expected_level) <= LAND_ABOVE_WATER
@@ -115,7 +115,7 @@ def bottom_points(
     """Return one point a pixel: bottom (40), object (43), land (2), or none found (45)."""
     found = bottom.found
     corrected = place_in_water(path=line.path, time=bottom.time, group_index=group_index)
-    straight = place_in_air(position=frame.pose.position, rays=rays, time=bottom.time)
+    straight = place_in_air(position=frame.measured.position, rays=rays, time=bottom.time)
     on_land, in_water = line.land[..., None], found[..., None]
     position = np.where(on_land, line.first, np.where(in_water, corrected, line.path.entry))
     classification = np.select(

@@ -48,7 +48,7 @@ def bend_at_surface(
 
     Parameters
     ----------
-    position : array (3,)
+    position : array (3,) or (..., 3)
         Where the rays start [m].
     rays : array (..., 3)
         Unit directions.
@@ -64,7 +64,7 @@ def bend_at_surface(
     >>> path.entry.tolist(), [round(value, 3) for value in path.direction.tolist()]
     ([150.0, 0.0, 0.0], [0.5, 0.0, -0.866])
     """
-    length = (level - position[2]) / rays[..., 2]
+    length = (level - position[..., 2]) / rays[..., 2]
     entry = position + rays * length[..., None]
     direction = rays / refractive_index
     direction[..., 2] = -np.sqrt(1.0 - np.sum(direction[..., :2] ** 2, axis=-1))

@@ -1,111 +1,23 @@
-"""From photon counts to ranges: first surface, last bottom peak, by the threshold of eq. (11).
+"""From a detector's readings to ranges: first surface, last bottom peak, by a threshold.
 
-Counts are summed over a gate of one pulse width that slides by one bin. A gate fires when it holds
-at least n_L counts; n_L is set for each gate such that its noise alone reaches it with the false
-alarm rate divided by the number of gates: a pixel then fires falsely in one flash with at most the
-stated rate. For the bottom, noise is sun, dark counts, and what water without a bottom sends back.
+Thresholds are those of `survey.cloud.noise`, for readings summed over a gate of one pulse width.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d, uniform_filter
-from scipy.stats import norm
+from scipy.ndimage import maximum_filter1d
 
-from survey.sensor.detector import firing_probability, firing_threshold
+from survey.cloud.noise import NoiseModel, Readout, gate_scatter, gate_sums
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 SURFACE_SEARCH_GATES = 1.5
 GUARD_GATES = 1.0
-NEIGHBOURS = 9
-
-
-@dataclass(frozen=True, kw_only=True)
-class RangingSettings:
-    """How counts are judged.
-
-    Parameters
-    ----------
-    false_alarm_rate : float
-        Highest probability of a false echo, per pixel and flash, over the whole gate [1].
-    gate : float
-        Width of the sliding gate, about a pulse [s].
-    """
-
-    false_alarm_rate: float
-    gate: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class NoiseModel:
-    """Counts that are no bottom, and the thresholds they ask for; arrays (rows, columns, bins).
-
-    Parameters
-    ----------
-    steady : float
-        Sun and dark counts of a bin [1].
-    bottomless : array
-        Mean counts of a bin over water without a bottom, surface echo and steady noise included.
-    surface_threshold, bottom_threshold : array
-        n_L of the gate that is centred on the bin.
-    gate_bins : int
-        Bins of a gate, odd.
-    pulse : array (taps,)
-        The pulse in bins, for the matched filter.
-    bin_start, bin_width : float
-        Early edge of the first bin, and width [s].
-    """
-
-    steady: float
-    bottomless: FloatArray
-    surface_threshold: FloatArray
-    bottom_threshold: FloatArray
-    gate_bins: int
-    pulse: FloatArray
-    bin_start: float
-    bin_width: float
-
-    @classmethod
-    def build(
-        cls,
-        *,
-        settings: RangingSettings,
-        steady: float,
-        bottomless: FloatArray,
-        flash_variance: FloatArray,
-        model_flashes: int,
-        pulse: FloatArray,
-        bin_start: float,
-        bin_width: float,
-    ) -> NoiseModel:
-        """Set the thresholds.
-
-        ``flash_variance`` (rows, columns, bins) is the squared Monte Carlo error of a flash and
-        ``model_flashes`` how many of them the model is the mean of: thresholds are raised by the
-        error of model and flash together, averaged over 9 x 9 pixels. The pulse makes the errors
-        of a gate's bins rise and fall together, so they are summed.
-        """
-        smooth = uniform_filter(flash_variance, size=(NEIGHBOURS, NEIGHBOURS, 1))
-        gate_bins = 2 * int(settings.gate / bin_width / 2.0) + 1
-        per_gate = settings.false_alarm_rate / bottomless.shape[-1]
-        steady_gate = np.full(1, steady * gate_bins)
-        error = gate_sums(np.sqrt(np.maximum(smooth, 0.0) * (1.0 + 1.0 / model_flashes)), gate_bins)
-        noise = gate_sums(bottomless, gate_bins) + norm.isf(per_gate) * error
-        return cls(
-            steady=steady,
-            bottomless=bottomless,
-            surface_threshold=firing_threshold(false_alarm=per_gate, noise=steady_gate),
-            bottom_threshold=firing_threshold(false_alarm=per_gate, noise=noise),
-            gate_bins=gate_bins,
-            pulse=pulse,
-            bin_start=bin_start,
-            bin_width=bin_width,
-        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,7 +31,8 @@ class Echo:
     counts : array
         Counts above the expected noise [1].
     snr : array
-        Those counts over the square root of all counts in the gate [1].
+        Those counts over the standard deviation of all counts in the gate, the detector's own
+        noise included [1].
     """
 
     time: FloatArray
@@ -132,21 +45,7 @@ class Echo:
         return np.isfinite(self.time)
 
 
-def gate_sums(counts: FloatArray | NDArray[np.int32], gate_bins: int) -> FloatArray:
-    """Return the sum over a gate of odd width around every bin of the last axis.
-
-    Examples
-    --------
-    >>> gate_sums(np.array([1.0, 2.0, 3.0, 4.0]), 3).tolist()
-    [3.0, 6.0, 9.0, 7.0]
-    """
-    half = gate_bins // 2
-    padding = [(0, 0)] * (counts.ndim - 1) + [(half + 1, half)]
-    running = np.cumsum(np.pad(np.asarray(counts, dtype=np.float64), padding), axis=-1)
-    return np.asarray(running[..., gate_bins:] - running[..., :-gate_bins])
-
-
-def first_echo(*, counts: NDArray[np.int32], noise: NoiseModel) -> Echo:
+def first_echo(*, counts: Readout, noise: NoiseModel) -> Echo:
     """Find the crest that begins with the first gate that fires over sun and dark counts.
 
     From the strongest of the gates soon after it, go on to the first gate that none within half a
@@ -161,11 +60,23 @@ def first_echo(*, counts: NDArray[np.int32], noise: NoiseModel) -> Echo:
     strongest = np.where(near, sums, -1.0).argmax(axis=-1)
     crest = sums == maximum_filter1d(sums, noise.gate_bins, axis=-1)
     peak = (crest & (bins >= strongest[..., None])).argmax(axis=-1)
-    steady = np.full_like(noise.bottomless, noise.steady)
-    return _measured(counts, np.where(fires.any(axis=-1), peak, -1), steady, noise)
+    echo = _measured(counts, np.where(fires.any(axis=-1), peak, -1), noise.steady, noise)
+    return replace(echo, time=echo.time - noise.surface_walk)
 
 
-def last_echo(*, counts: NDArray[np.int32], noise: NoiseModel, surface_time: FloatArray) -> Echo:
+def surface_walk(noise: NoiseModel) -> FloatArray:
+    """Return how much later than its light the surface echo reads (rows, columns) [s].
+
+    A detector that sees first photons tells strong echoes early. How early the surface is told is
+    taken from the model, as a survey would calibrate it over water of known level.
+    """
+    light = noise.bottomless_light
+    light = light * (noise.bottomless.sum() / light.sum())
+    read, true = (first_echo(counts=each, noise=noise) for each in (noise.bottomless, light))
+    return np.nan_to_num(read.time - true.time, nan=0.0)
+
+
+def last_echo(*, counts: Readout, noise: NoiseModel, surface_time: FloatArray) -> Echo:
     """Find the last peak over the noise of bottomless water.
 
     The search begins one gate after ``surface_time`` (rows, columns) [s]; nan there says that the
@@ -209,18 +120,31 @@ def bottom_detection_probability(*, bottom: FloatArray, noise: NoiseModel) -> Fl
     ``bottom`` are the expected photo-electrons of the bottom (rows, columns, bins): truth, used to
     judge a flight and never to find an echo.
     """
-    echo = gate_sums(bottom, noise.gate_bins)
+    more = noise.detector.added(noise.bottomless_light, bottom, noise.bottomless)
+    echo = gate_sums(more, noise.gate_bins)
     best = echo.argmax(axis=-1)[..., None]
+    lit = noise.detector.scatter(noise.bottomless_light + bottom, noise.bottomless + more)
     mean = echo + gate_sums(noise.bottomless, noise.gate_bins)
-    probability = firing_probability(
-        threshold=np.take_along_axis(noise.bottom_threshold, best, -1),
-        mean=np.take_along_axis(mean, best, -1),
-    )
-    return np.asarray(probability[..., 0])
+    gate = gate_scatter(lit, mean, noise.gate_bins).at(best)
+    threshold = np.take_along_axis(noise.bottom_threshold, best, -1)
+    return gate.firing_probability(threshold)[..., 0]
+
+
+def blind_at(*, blind: BoolArray, time: FloatArray, noise: NoiseModel) -> BoolArray:
+    """Tell which pixels were blind in some bin of the gate around a time (rows, columns) [s].
+
+    ``blind`` (rows, columns, bins) is what the detector says; truth knows the time.
+    """
+    bins = blind.shape[-1]
+    known = np.isfinite(time)
+    place = (np.where(known, time, noise.bin_start) - noise.bin_start) / noise.bin_width
+    centre = np.clip(place, 0, bins - 1).astype(np.int64)[..., None]
+    dark = maximum_filter1d(blind, noise.gate_bins, axis=-1)
+    return np.asarray(np.take_along_axis(dark, centre, -1)[..., 0] & known)
 
 
 def _measured(
-    counts: NDArray[np.int32], peak: NDArray[np.int64], expected: FloatArray, noise: NoiseModel
+    counts: Readout, peak: NDArray[np.int64], expected: FloatArray, noise: NoiseModel
 ) -> Echo:
     """Return the echo around a bin; -1 says that there is none."""
     found = peak >= 0
@@ -230,7 +154,8 @@ def _measured(
     time = noise.bin_start + (lag + 0.5) * noise.bin_width
     above = np.take_along_axis(gate_sums(excess, noise.gate_bins), at, -1)[..., 0]
     everything = np.take_along_axis(gate_sums(counts, noise.gate_bins), at, -1)[..., 0]
-    snr = above / np.sqrt(np.maximum(everything, 1.0))
+    spread = replace(noise.gate.at(at), mean=np.maximum(everything, 1.0)[..., None]).variance
+    snr = above / np.sqrt(spread[..., 0])
     return Echo(
         time=np.where(found, time, np.nan),
         counts=np.where(found, above, np.nan),

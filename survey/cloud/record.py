@@ -6,14 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.georeference import depth_of
+from survey.cloud.noise import NoiseModel, gate_sums
 from survey.cloud.points import PixelRecord, PointCloud
-from survey.cloud.ranging import (
-    GUARD_GATES,
-    Echo,
-    NoiseModel,
-    bottom_detection_probability,
-    gate_sums,
-)
+from survey.cloud.ranging import GUARD_GATES, Echo, bottom_detection_probability
 from survey.cloud.truth import TrueTargets, outcomes
 from survey.transport.waveforms import Waveforms
 
@@ -37,7 +32,7 @@ def pixel_record(
     waveforms : Waveforms
         Expected photo-electrons, the bottom's among them.
     saturated : array (rows, columns)
-        Pixels with a full bin.
+        Pixels that were blind when the bottom's light came.
     bottom : Echo
         The bottom echoes that were found.
     points : PointCloud
@@ -51,7 +46,9 @@ def pixel_record(
     """
     expected = waveforms.origin("bottom")
     probability = bottom_detection_probability(bottom=expected, noise=noise)
-    counts, spread = _best_gate(expected, np.sqrt(waveforms.variance[2]), noise.gate_bins)
+    counts, spread = _best_gate(
+        expected, np.sqrt(waveforms.variance[2], dtype=np.float64), noise.gate_bins
+    )
     error = (points.position[:, 2] - points.true_elevation).reshape(probability.shape)
     width = noise.bin_width
     return PixelRecord(

@@ -96,7 +96,7 @@ def outcomes(
     error : array (rows, columns)
         Measured less true elevation of the bottom point [m].
     found, saturated : array (rows, columns)
-        Whether a bottom was reported, and whether a bin was full.
+        Whether a bottom was reported, and whether the detector was blind when it should have been.
     probability : array (rows, columns)
         Probability that the true echo fires.
     gate : (float, float)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from survey.cloud.points import PixelRecord, PointCloud
+from survey.cloud.raw import RawReadings
 from survey.products.writing import write_whole
 
 
@@ -25,11 +26,14 @@ class FrameResult:
         Points of the frame.
     record : PixelRecord
         Truth and outcome of every pixel.
+    raw : RawReadings, optional
+        What the detector put out, where the scenario keeps it; `read_raw` reads it back.
     """
 
     bottom: PointCloud
     surface: PointCloud
     record: PixelRecord
+    raw: RawReadings | None = None
 
 
 def frame_bytes(result: FrameResult) -> bytes:
@@ -39,6 +43,9 @@ def frame_bytes(result: FrameResult) -> bytes:
         arrays |= {f"{part}_{name}": column for name, column in columns.columns().items()}
     for field in fields(PixelRecord):
         arrays[f"pixel_{field.name}"] = getattr(result.record, field.name)
+    if result.raw is not None:
+        for field in fields(RawReadings):
+            arrays[f"raw_{field.name}"] = getattr(result.raw, field.name)
     content = io.BytesIO()
     np.savez_compressed(content, **arrays)
     return content.getvalue()
@@ -52,7 +59,7 @@ def write_frame(path: Path, result: FrameResult) -> bytes:
 
 
 def read_frame(path: Path) -> FrameResult:
-    """Read a frame that `write_frame` wrote.
+    """Read a frame that `write_frame` wrote, without the detector's raw output.
 
     Raises
     ------
@@ -68,6 +75,16 @@ def read_frame(path: Path) -> FrameResult:
             )
     except (zipfile.BadZipFile, zlib.error, EOFError, TypeError, ValueError) as fault:
         raise ValueError(f"{path}: not a whole frame ({fault}). Delete it and run again") from None
+
+
+def read_raw(path: Path) -> RawReadings | None:
+    """Read what the detector put out from a frame's file; None where it was not kept.
+
+    ``processing.keep_waveforms`` says whether a run keeps it.
+    """
+    with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
+        part = _part(arrays, "raw")
+    return RawReadings(**part) if part else None
 
 
 def _part(arrays: Any, prefix: str) -> dict[str, Any]:

@@ -61,3 +61,24 @@ class Camera:
         if self.long_side == "along":
             return -from_column, from_row
         return -from_row, from_column
+
+    def nearest_pixel(
+        self, forward: FloatArray, right: FloatArray
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Return row and column of the pixels that look nearest to tangents (forward, right).
+
+        Examples
+        --------
+        >>> camera = Camera(rows=32, columns=64, pixel_tangent=0.008, long_side="along")
+        >>> row, column = camera.nearest_pixel(np.array([0.252, -9.0]), np.array([-0.124, 0.0041]))
+        >>> row.tolist(), column.tolist()
+        ([0, 16], [0, 63])
+        """
+        along = self.long_side == "along"
+        across_rows, across_columns = (right, -forward) if along else (-forward, right)
+        row = np.floor(across_rows / self.pixel_tangent + 0.5 * self.rows)
+        column = np.floor(across_columns / self.pixel_tangent + 0.5 * self.columns)
+        return (
+            np.clip(row, 0, self.rows - 1).astype(np.int64),
+            np.clip(column, 0, self.columns - 1).astype(np.int64),
+        )

@@ -1,68 +1,81 @@
-"""From expected photo-electrons to counts: the ideal photon counter."""
+"""What every detector does: expected photo-electrons in, readings of every bin out."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import pdtrc
-from scipy.stats import poisson
+
+from survey.sensor.scatter import Scatter
 
 FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
-class IdealCounter:
-    """Counts every photo-electron; no dead time, no afterpulses.
+class TimeTags:
+    """Counts one by one, in no stated order; arrays (m,).
 
     Parameters
     ----------
-    quantum_efficiency : float
-        Photo-electrons per photon, 0 to 1 [1].
-    dark_count_rate : float
-        Counts in the dark, per pixel [1/s].
-    max_counts_per_bin : int
-        Where the counter of a bin is full; a full bin says that the pixel is saturated.
+    row, column : array
+        Pixel.
+    pulse : array
+        Pulse of the frame's burst, from 0.
+    time : array
+        Time after the receiver's gate opens [s].
     """
 
-    quantum_efficiency: float
-    dark_count_rate: float
-    max_counts_per_bin: int
-
-    def count(self, expected: FloatArray, chance: np.random.Generator) -> NDArray[np.int32]:
-        """Draw counts for expected photo-electrons of any shape, equation (9) of [Lisenko2017]."""
-        return np.minimum(chance.poisson(expected), self.max_counts_per_bin).astype(np.int32)
-
-    def saturated(self, counts: NDArray[np.int32]) -> NDArray[np.bool_]:
-        """Tell which pixels have a full bin; the last axis is time."""
-        return np.asarray((counts >= self.max_counts_per_bin).any(axis=-1))
+    row: NDArray[np.int32]
+    column: NDArray[np.int32]
+    pulse: NDArray[np.int32]
+    time: NDArray[np.float32]
 
 
-def firing_probability(*, threshold: FloatArray, mean: FloatArray) -> FloatArray:
-    """Probability of at least ``threshold`` counts, equation (11) of [Lisenko2017] [1].
-
-    Examples
-    --------
-    >>> round(float(firing_probability(threshold=np.array(1.0), mean=np.array(0.5))), 6)
-    0.393469
-    """
-    return np.asarray(pdtrc(threshold - 1.0, mean))
-
-
-def firing_threshold(*, false_alarm: float, noise: FloatArray) -> FloatArray:
-    """Smallest count that noise alone reaches with at most this probability.
+@dataclass(frozen=True, kw_only=True)
+class Readings:
+    """What a detector puts out for one frame, all its pulses summed.
 
     Parameters
     ----------
-    false_alarm : float
-        Probability, above 0 and below 1 [1].
-    noise : array
-        Mean counts of the noise [1].
-
-    Examples
-    --------
-    >>> firing_threshold(false_alarm=1e-3, noise=np.array([0.01, 1.0])).tolist()
-    [2.0, 6.0]
+    counts : array (rows, columns, bins)
+        Whole counts, or a current as the photo-electrons that make it on average.
+    blind : array (rows, columns, bins)
+        Bins in which more light would not have read as more: a full counter, or a detector that
+        was dead in more than half of the pulses.
+    tags : TimeTags, optional
+        The counts one by one, where the detector tells them and was asked to.
     """
-    return np.asarray(poisson.isf(false_alarm, noise) + 1.0)
+
+    counts: NDArray[Any]
+    blind: NDArray[np.bool_]
+    tags: TimeTags | None = None
+
+
+class Detector(Protocol):
+    """A matrix of pixels behind the optics; arrays (rows, columns, bins)."""
+
+    @property
+    def photo_electrons_per_photon(self) -> float:
+        """What the transport multiplies light by [1]."""
+
+    @property
+    def dark_count_rate(self) -> float:
+        """Counts or electrons in the dark, per pixel [1/s]."""
+
+    @property
+    def timing_sigma(self) -> float:
+        """Standard deviation by which the detector widens a pulse [s]."""
+
+    def read(self, light: FloatArray, chance: np.random.Generator) -> Readings:
+        """Draw the readings of one frame for the photo-electrons expected of one pulse."""
+
+    def mean(self, light: FloatArray) -> FloatArray:
+        """Return the mean readings of one frame."""
+
+    def scatter(self, light: FloatArray, mean: FloatArray) -> Scatter:
+        """Tell how the readings scatter about such a mean, which this light has."""
+
+    def added(self, light: FloatArray, more: FloatArray, mean: FloatArray) -> FloatArray:
+        """Return how much the mean readings grow from ``mean`` when more light comes on top."""

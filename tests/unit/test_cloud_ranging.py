@@ -8,15 +8,15 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 from scipy.stats import binom, norm, poisson
 
+from survey.cloud.noise import NoiseModel, RangingSettings, gate_sums
 from survey.cloud.ranging import (
     Echo,
-    NoiseModel,
-    RangingSettings,
+    blind_at,
     bottom_detection_probability,
     first_echo,
-    gate_sums,
     last_echo,
 )
+from survey.sensor.ideal import IdealCounter
 from survey.transport.waveforms import pulse_taps
 
 FloatArray = NDArray[np.float64]
@@ -26,6 +26,7 @@ BINS = 300
 SIGMA = 10.0 * NS / 2.3548200450309493
 GATE = 11
 CALM_SURFACE = START + 40.0 * NS
+COUNTER = IdealCounter(quantum_efficiency=0.2, dark_count_rate=0.0, max_counts_per_bin=65_535)
 
 
 def pulse(
@@ -49,8 +50,9 @@ def noise_model(
 ) -> NoiseModel:
     return NoiseModel.build(
         settings=RangingSettings(false_alarm_rate=rate, gate=10.0 * NS),
-        steady=steady,
-        bottomless=bottomless,
+        detector=COUNTER,
+        steady_light=steady,
+        bottomless_light=bottomless,
         flash_variance=np.full(bottomless.shape, variance),
         model_flashes=4,
         pulse=pulse_taps(sigma=SIGMA, width=NS, pad=13),
@@ -80,7 +82,7 @@ def test_thresholds_are_the_least_counts_that_noise_reaches_seldom_enough(rate: 
     noise = noise_model(bottomless, rate=rate)
     counts = np.arange(2000)
     for threshold, mean in (
-        (noise.surface_threshold, np.array([0.02 * GATE])),
+        (noise.surface_threshold, np.full(bottomless.shape, 0.02 * GATE)),
         (noise.bottom_threshold, gate_sums(bottomless, GATE)),
     ):
         rare = poisson.sf(counts - 1, mean[..., None]) <= rate / BINS
@@ -101,8 +103,9 @@ def test_thresholds_are_raised_by_the_monte_carlo_error_of_model_and_flash() -> 
 def test_a_gate_is_odd_in_bins(gate_ns: float, bins: int) -> None:
     noise = NoiseModel.build(
         settings=RangingSettings(false_alarm_rate=1e-3, gate=gate_ns * NS),
-        steady=0.1,
-        bottomless=np.full((1, 1, BINS), 0.1),
+        detector=COUNTER,
+        steady_light=0.1,
+        bottomless_light=np.full((1, 1, BINS), 0.1),
         flash_variance=np.zeros((1, 1, BINS)),
         model_flashes=4,
         pulse=np.ones(1),
@@ -250,3 +253,12 @@ def test_the_probability_of_firing_is_the_share_of_gates_that_fire() -> None:
     ).found.mean(axis=0)
     assert np.all(found >= probability - 4.5 * spread - 1e-3)
     assert np.all(found <= probability + 0.2)
+
+
+def test_a_pixel_is_blind_where_its_gate_holds_a_blind_bin() -> None:
+    noise = noise_model(np.full((1, 4, BINS), 0.02))
+    blind = np.zeros((1, 4, BINS), np.bool_)
+    blind[0, :3, 100] = True
+    times = START + (np.array([[100.5, 105.5, 106.5, 100.5]])) * NS
+    assert blind_at(blind=blind, time=times, noise=noise).tolist() == [[True, True, False, False]]
+    assert not blind_at(blind=blind, time=np.full((1, 4), np.nan), noise=noise).any()

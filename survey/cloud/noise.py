@@ -1,0 +1,167 @@
+"""What is no bottom: sun, darkness and the water's own light, and the thresholds above them.
+
+Readings are summed over a gate of one pulse width that slides by one bin. A gate fires when it
+holds at least n_L; n_L is set for each gate such that its noise alone reaches it with the false
+alarm rate divided by the number of gates: a pixel then fires falsely in one flash with at most the
+stated rate. The detector tells which mean readings light has and how they scatter.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d, uniform_filter
+from scipy.stats import norm
+
+from survey.sensor.detector import Detector
+from survey.sensor.scatter import Scatter
+
+FloatArray = NDArray[np.float64]
+Readout = NDArray[np.floating | np.integer]
+
+NEIGHBOURS = 9
+
+
+@dataclass(frozen=True, kw_only=True)
+class RangingSettings:
+    """How counts are judged.
+
+    Parameters
+    ----------
+    false_alarm_rate : float
+        Highest probability of a false echo, per pixel and flash, over the whole gate [1].
+    gate : float
+        Width of the sliding gate, about a pulse [s].
+    """
+
+    false_alarm_rate: float
+    gate: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class NoiseModel:
+    """Readings that are no bottom, and the thresholds they ask for; arrays (rows, columns, bins).
+
+    Parameters
+    ----------
+    detector : Detector
+        Whose readings they are.
+    steady_light : float
+        Photo-electrons that sun and darkness make in a bin of one pulse [1].
+    bottomless_light : array
+        Mean photo-electrons of a bin of one pulse over water without a bottom, surface echo and
+        steady light included.
+    steady, bottomless : array
+        Mean readings under these lights.
+    gate : Scatter
+        Readings of the gate that is centred on the bin, over water without a bottom.
+    surface_threshold, bottom_threshold : array
+        n_L of that gate.
+    gate_bins : int
+        Bins of a gate, odd.
+    pulse : array (taps,)
+        The pulse in bins, for the matched filter.
+    bin_start, bin_width : float
+        Early edge of the first bin, and width [s].
+    surface_walk : array (rows, columns) or float
+        How much later than its light the surface echo reads, see
+        `survey.cloud.ranging.surface_walk` [s].
+    """
+
+    detector: Detector
+    steady_light: float
+    bottomless_light: FloatArray
+    steady: FloatArray
+    bottomless: FloatArray
+    gate: Scatter
+    surface_threshold: FloatArray
+    bottom_threshold: FloatArray
+    gate_bins: int
+    pulse: FloatArray
+    bin_start: float
+    bin_width: float
+    surface_walk: FloatArray | float = 0.0
+
+    @classmethod
+    def build(
+        cls,
+        *,
+        settings: RangingSettings,
+        detector: Detector,
+        steady_light: float,
+        bottomless_light: FloatArray,
+        flash_variance: FloatArray,
+        model_flashes: int,
+        pulse: FloatArray,
+        bin_start: float,
+        bin_width: float,
+    ) -> NoiseModel:
+        """Set the thresholds.
+
+        ``flash_variance`` (rows, columns, bins) is the squared Monte Carlo error of a flash and
+        ``model_flashes`` how many of them the model is the mean of: thresholds are raised by the
+        error of model and flash together, averaged over 9 x 9 pixels. The pulse makes the errors
+        of a gate's bins rise and fall together, so they are summed. The surface is sought over the
+        strongest steady readings within a gate.
+        """
+        gate_bins = 2 * int(settings.gate / bin_width / 2.0) + 1
+        per_gate = settings.false_alarm_rate / bottomless_light.shape[-1]
+        even_light = np.full(bottomless_light.shape, steady_light)
+        steady = detector.scatter(even_light, detector.mean(even_light))
+        bottomless = detector.scatter(bottomless_light, detector.mean(bottomless_light))
+        smooth = uniform_filter(flash_variance, size=(NEIGHBOURS, NEIGHBOURS, 1))
+        error = np.sqrt(np.maximum(smooth, 0.0) * (1.0 + 1.0 / model_flashes))
+        uncertain = _reading_error(detector, bottomless_light, error, bottomless.mean)
+        gate = gate_scatter(bottomless, gate_sums(bottomless.mean, gate_bins), gate_bins)
+        raised = gate.mean + norm.isf(per_gate) * gate_sums(uncertain, gate_bins)
+        strongest = maximum_filter1d(steady.mean, gate_bins, axis=-1) * gate_bins
+        return cls(
+            detector=detector,
+            steady_light=steady_light,
+            bottomless_light=bottomless_light,
+            steady=steady.mean,
+            bottomless=bottomless.mean,
+            gate=gate,
+            surface_threshold=gate_scatter(steady, strongest, gate_bins).threshold(per_gate),
+            bottom_threshold=replace(gate, mean=raised).threshold(per_gate),
+            gate_bins=gate_bins,
+            pulse=pulse,
+            bin_start=bin_start,
+            bin_width=bin_width,
+        )
+
+
+def gate_sums(counts: Readout, gate_bins: int) -> FloatArray:
+    """Return the sum over a gate of odd width around every bin of the last axis.
+
+    Examples
+    --------
+    >>> gate_sums(np.array([1.0, 2.0, 3.0, 4.0]), 3).tolist()
+    [3.0, 6.0, 9.0, 7.0]
+    """
+    half = gate_bins // 2
+    padding = [(0, 0)] * (counts.ndim - 1) + [(half + 1, half)]
+    running = np.cumsum(np.pad(np.asarray(counts, dtype=np.float64), padding), axis=-1)
+    return np.asarray(running[..., gate_bins:] - running[..., :-gate_bins])
+
+
+def _reading_error(
+    detector: Detector, light: FloatArray, error: FloatArray, mean: FloatArray
+) -> FloatArray:
+    """Return by how much the mean readings may be off when all light is off by its error.
+
+    Where light blinds a detector, too little of it gives too many readings later.
+    """
+    above, below = detector.added(light, error, mean), detector.added(light, -error, mean)
+    return np.maximum(np.abs(above), np.abs(below))
+
+
+def gate_scatter(bins: Scatter, mean: FloatArray, gate_bins: int) -> Scatter:
+    """Return the scatter of gates with these means; the noisiest gain of a gate holds for all."""
+    return Scatter(
+        mean=mean,
+        gain_variance=maximum_filter1d(bins.gain_variance, gate_bins, axis=-1),
+        added_variance=gate_sums(bins.added_variance, gate_bins),
+    )
