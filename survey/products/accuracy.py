@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from survey.cloud.points import PixelRecord, PointClass, PointCloud
 from survey.products.cells import CellGrid, inside_ring
 from survey.products.pixels import pixel_metrics
+from survey.products.reach import WaterClarity, optical_depths
 
 FloatArray = NDArray[np.float64]
 ElevationAt = Callable[[FloatArray, FloatArray], FloatArray]
@@ -28,6 +29,7 @@ def metrics(
     water_level: float,
     survey_area: FloatArray,
     cell_size: float,
+    clarity: WaterClarity,
 ) -> dict[str, Any]:
     """Return what a mission achieved, as plain values for JSON; None where nothing was measured.
 
@@ -49,7 +51,7 @@ def metrics(
     density_per_m2                      bottom points over the area of these wet cells
     ==================================  ========================================================
 
-    followed by what `pixel_metrics` counts.
+    followed by what `pixel_metrics` counts and what `optical_depths` makes of its depths.
 
     Parameters
     ----------
@@ -66,6 +68,8 @@ def metrics(
     cell_size : float
         Side of the cells of coverage [m]: that of the thinning, and not below the pixels'
         spacing on the bottom, or full coverage is out of reach.
+    clarity : WaterClarity
+        What makes optical depths of depths.
 
     Raises
     ------
@@ -74,6 +78,7 @@ def metrics(
     """
     solid = bottom.select(np.isin(bottom.classification, BOTTOM_CLASSES))
     ground = bottom.select(bottom.classification == PointClass.GROUND)
+    pixels = pixel_metrics(records)
     values = {
         "frames": len(records),
         "points_bottom": len(solid),
@@ -85,7 +90,8 @@ def metrics(
         **_error_metrics("ground_", ground),
         "false_bottoms": int((np.abs(elevation_errors(solid)) > FALSE_BOTTOM_ERROR).sum()),
         **_coverage(solid, elevation_at, water_level, survey_area, cell_size),
-        **pixel_metrics(records),
+        **pixels,
+        **optical_depths(pixels, clarity),
     }
     return {name: _rounded(value) for name, value in values.items()}
 

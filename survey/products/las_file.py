@@ -160,12 +160,12 @@ def _fill_standard_fields(las: Any, cloud: PointCloud, frames: Sequence[Frame]) 
 def scan_angle_deg(cloud: PointCloud, frames: Sequence[Frame]) -> NDArray[np.float64]:
     """Return the angle off nadir across the track, positive to the right (n,) [deg].
 
-    Taken to the uncorrected point, hence the direction in air, from the pose of its frame.
+    Taken to the uncorrected point, hence the direction in air, from the measured pose of its frame.
     """
     index = {frame.index: number for number, frame in enumerate(frames)}
     of_point = np.array([index[number] for number in cloud.frame.tolist()], dtype=np.intp)
-    sensor = np.array([frame.pose.position for frame in frames])[of_point]
-    heading = np.array([frame.pose.heading for frame in frames])[of_point]
+    sensor = np.array([frame.measured.position for frame in frames])[of_point]
+    heading = np.array([frame.measured.heading for frame in frames])[of_point]
     ray = cloud.uncorrected - sensor
     right = ray[:, 0] * np.cos(heading) - ray[:, 1] * np.sin(heading)
     return np.asarray(np.degrees(np.arctan2(right, -ray[:, 2])))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from survey.cloud.points import Outcome, PixelRecord
 
-DETECTABLE = 0.9
+DETECTABLE, HALF = 0.9, 0.5
 DEPTH_BIN = 0.5
 SEEN = (Outcome.FOUND, Outcome.DRY)
 REASONS = {
@@ -37,6 +37,9 @@ def pixel_metrics(records: Sequence[PixelRecord]) -> dict[str, Any]:
     detection_depth_m                       deep edge of the deepest 0.5 m bin of true depth
                                             whose median detection_probability is >= 0.9
     found_fraction_above_detection_depth    share of FOUND in all wet pixels down to there
+    found_depth_m                           the same edge of the deepest such bin that has 0.9 of
+                                            its pixels FOUND
+    half_found_depth_m                      and of that with half of them
     ======================================  ====================================================
     """
     depth = _wet_column(records, "true_depth")
@@ -44,7 +47,7 @@ def pixel_metrics(records: Sequence[PixelRecord]) -> dict[str, Any]:
     probability = _wet_column(records, "detection_probability")
     error = _wet_column(records, "monte_carlo_relative_error")
     error = error[np.isfinite(error) & (_wet_column(records, "bottom_counts") > 0.0)]
-    limit = _detection_depth(depth, probability)
+    limit = _deepest(depth, lambda here: np.median(probability[here]) >= DETECTABLE)
     found = outcome == Outcome.FOUND
     return {
         "pixels_wet": int(depth.size),
@@ -60,6 +63,8 @@ def pixel_metrics(records: Sequence[PixelRecord]) -> dict[str, Any]:
         "found_fraction_above_detection_depth": None
         if limit is None
         else _share(found[depth <= limit]),
+        "found_depth_m": _deepest(depth, lambda here: found[here].mean() >= DETECTABLE),
+        "half_found_depth_m": _deepest(depth, lambda here: found[here].mean() >= HALF),
     }
 
 
@@ -99,9 +104,10 @@ def _share(which: NDArray[np.bool_]) -> float | None:
     return float(which.mean()) if which.size else None
 
 
-def _detection_depth(depth: NDArray[Any], probability: NDArray[Any]) -> float | None:
+def _deepest(depth: NDArray[Any], good: Callable[[NDArray[np.bool_]], Any]) -> float | None:
+    """Return the deep edge of the deepest 0.5 m bin that is good, told by a mask of its pixels."""
     bins = np.floor(depth / DEPTH_BIN).astype(np.intp)
     for number in np.unique(bins)[::-1]:
-        if np.median(probability[bins == number]) >= DETECTABLE:
+        if good(bins == number):
             return float((number + 1) * DEPTH_BIN)
     return None

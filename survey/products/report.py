@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from survey.products.coverage import CoverageMap
 from survey.products.grids import ElevationGrid
+from survey.products.reach import reach_sentence
 from survey.products.report_figures import depth_map, error_histogram, outcome_map
 from survey.products.writing import write_whole
 
@@ -88,6 +89,7 @@ def write_report(
             f"<p>Median of the points in cells of {grid.cells.cell_size:g} m, "
             f"below the water level at {water_level:+.2f} m in the vertical datum.</p>",
             _image(depth_map(grid, water_level=water_level), "map of depth"),
+            f"<p>{reach_sentence(metrics)}</p>",
             "<h2>What became of the bottom</h2>",
             f"<p>The commonest outcome in cells of {coverage.cells.cell_size:g} m. "
             f"{_missed(metrics)}</p>",

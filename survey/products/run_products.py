@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from survey.cloud.points import Outcome, PointClass, PointCloud
 from survey.cloud.stitch import stitched
@@ -22,10 +23,14 @@ from survey.products.las_file import write_laz
 from survey.products.mesh_files import write_bathymetry_glb
 from survey.products.pixels import explain_empty
 from survey.products.ply_file import write_ply
+from survey.products.reach import WaterClarity
 from survey.products.report import write_report
+from survey.products.track_files import TrackFormat, write_trajectory_files
 from survey.products.trajectory_file import write_trajectory_csv
 from survey.products.writing import ProductError
 from terrain.seabed import Seabed
+
+FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,6 +49,15 @@ class ProductSettings:
         Sides of the cells in which overlaps are thinned and elevations gridded [m].
     pixel_spacing : float
         Distance of neighbouring pixels on the bottom [m].
+    survey_area : array (n, 2) or None
+        Ring around the area that was ordered [m, local]; without one it is the hull of what all
+        pixels look at.
+    trajectory_files : sequence of str
+        Formats beside CSV in which the measured trajectory is written.
+    deviations : tuple of float
+        Standard deviations of the measured pose, see `Navigation.deviations`.
+    clarity : WaterClarity
+        Of the water.
     """
 
     title: str
@@ -53,6 +67,10 @@ class ProductSettings:
     thinning: float
     grid: float
     pixel_spacing: float
+    survey_area: FloatArray | None
+    trajectory_files: Sequence[TrackFormat]
+    deviations: tuple[float, ...]
+    clarity: WaterClarity
 
 
 def write_products(
@@ -82,7 +100,7 @@ def write_products(
     write_bathymetry_glb(
         folder / "bathymetry.glb", grid, seabed.map_frame, water_level=settings.water_level
     )
-    area = surveyed_hull(records)
+    area = surveyed_hull(records) if settings.survey_area is None else settings.survey_area
     cell = max(settings.grid, settings.pixel_spacing)
     coverage = coverage_map(
         records,
@@ -100,6 +118,7 @@ def write_products(
         water_level=settings.water_level,
         survey_area=area,
         cell_size=cell,
+        clarity=settings.clarity,
     )
     write_json(folder / "metrics.json", found)
     write_report(
@@ -144,5 +163,13 @@ def _write_clouds(
             frames=frames,
         )
     write_trajectory_csv(
-        folder / "trajectory.csv", frames, [frame.pose for frame in frames], seabed.map_frame
+        folder / "trajectory.csv", frames, [frame.measured for frame in frames], seabed.map_frame
+    )
+    write_trajectory_files(
+        folder,
+        frames,
+        seabed.map_frame,
+        formats=settings.trajectory_files,
+        start_utc=settings.start_utc,
+        deviations=settings.deviations,
     )
