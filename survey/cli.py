@@ -66,10 +66,11 @@ def run(
 ) -> None:
     """Fly a mission and write its run folder."""
     from survey.console import watching
+    from survey.scenario.components import flight_plan
     from survey.scenario.load import load_scenario, parse_frames, parse_overrides
 
     flown = load_scenario(scenario, parse_overrides(settings or []))
-    chosen = parse_frames(frames, flown.flight.lines * flown.flight.frames_per_line)
+    chosen = parse_frames(frames, flight_plan(flown).frame_count)
     from survey.mission import fly
 
     with watching(sys.stdout, quiet=quiet) as watcher:
@@ -88,7 +89,10 @@ def check(
     settings: Settings = None,
 ) -> None:
     """Check scenario files and show all their faults at once."""
+    from survey.scenario.components import flight_size
     from survey.scenario.load import load_scenario, parse_overrides
+    from survey.scenario.sun import sun_notes
+    from survey.scenario.water_notes import water_notes
 
     overrides, statuses = parse_overrides(settings or []), set()
     for name in scenarios:
@@ -99,12 +103,41 @@ def check(
             typer.echo(lines, err=True)
             statuses.add(status)
         else:
-            flight = sound.flight
-            size = f"lines x frames: {flight.lines} x {flight.frames_per_line}"
-            typer.echo(f"{sound.name}: sound, {size}")
+            typer.echo(f"{sound.name}: sound, {flight_size(sound)}")
+            for note in (*water_notes(sound), *sun_notes(sound.sun, sound.surface)):
+                typer.echo(f"{sound.name}: {note}")
     for status in (OUR_FAULT, BAD_INPUT, FILE_MISSING):
         if status in statuses:
             raise typer.Exit(status)
+
+
+@app.command()
+def plan(
+    scenario: Annotated[str, typer.Argument(help="A scenario file, or a name of the gallery.")],
+    settings: Settings = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, not a table.")] = False,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Map, PNG or SVG.")] = None,
+) -> None:
+    """Say what a flight will come to, before any light is traced: overlap, gaps, depth, cost."""
+    from survey.planning import picture
+    from survey.scenario.load import load_scenario, parse_overrides
+
+    if plot is not None:
+        picture.require_place(plot)
+    ordered = load_scenario(scenario, parse_overrides(settings or []))
+    from survey.planning import report
+    from survey.planning.plan import make_plan
+    from survey.products.json_file import json_bytes
+
+    found = make_plan(ordered)
+    for warning in report.warnings(found):
+        typer.echo(f"WARNING: {warning}", err=True)
+    if plot is not None:
+        picture.draw(plot, found)
+    if as_json:
+        typer.echo(json_bytes(report.as_json(found)).decode(), nl=False)
+    else:
+        typer.echo(report.as_text(found))
 
 
 @app.command()
@@ -141,7 +174,10 @@ def response(
     a: Annotated[float | None, typer.Option("--a", help="Absorption [1/m].")] = None,
     b: Annotated[float | None, typer.Option("--b", help="Scattering [1/m].")] = None,
     phase_function: Annotated[
-        Path | None, typer.Option(metavar="CSV", help="Table angle_deg,value.")
+        str | None,
+        typer.Option(
+            metavar="CSV|KIND", help="Table angle_deg,value, or a kind such as average_particle."
+        ),
     ] = None,
     illumination: Annotated[
         Literal["flood", "isolated"], typer.Option(help="Who lights a pixel.")
@@ -156,7 +192,14 @@ def response(
 
     from survey import response_report as report
 
-    chosen = report.water_of(name=water, absorption=a, scattering=b, phase_function=phase_function)
+    chosen = report.water_of(
+        name=water,
+        absorption=a,
+        scattering=b,
+        phase_function=phase_function,
+        bottom_depth=bottom_depth,
+        plot=plot,
+    )
     from survey.transport.response import response as compute
 
     found = compute(water=chosen, illumination=illumination, bottom_depth=bottom_depth, seed=seed)
@@ -168,8 +211,45 @@ def response(
 
 
 @app.command()
+def paper(
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Results.")],
+    work: Annotated[
+        float, typer.Option(help="Walks over those of the full computation, 0.01 to 100.")
+    ] = 1.0,
+    seed: Annotated[int, typer.Option(min=0)] = 1,
+    threads: Annotated[int, typer.Option(min=0, help="0 is one for each core.")] = 0,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, not a table.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing but errors.")] = False,
+) -> None:
+    """Compute the paper's figures 1-3 and six depths anew, and whether its receiver can exist."""
+    from survey.paper.output import require_place, write_results
+
+    require_place(output)
+    from survey import paper_console as console
+    from survey.paper.figures import pictures
+    from survey.paper.report import as_json as plain
+    from survey.paper.reproduce import reproduce
+    from survey.products.json_file import json_bytes
+
+    with console.telling(sys.stderr if as_json else sys.stdout, quiet=quiet) as tell:
+        findings = reproduce(work=work, seed=seed, threads=threads, tell=tell)
+    result = json_bytes(plain(findings, work=work, seed=seed))
+    write_results(output, pictures(findings) | {"paper.json": result})
+    if as_json:
+        typer.echo(result.decode(), nl=False)
+    elif not quiet:
+        console.say(findings, sys.stdout)
+
+
+@app.command()
 def bench(
     threads: Annotated[int, typer.Option(min=0, help="0 is one for each core.")] = 0,
+    merit: Annotated[
+        bool, typer.Option("--merit", help="Compare with the textbook engine: ten minutes.")
+    ] = False,
+    scaling: Annotated[
+        bool, typer.Option("--scaling", help="How time grows with pixels, b z and mesh instead.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, not a table.")] = False,
 ) -> None:
     """Measure speed at a measured error, on four waters."""
@@ -177,12 +257,28 @@ def bench(
 
     from survey import bench as benchmark
 
+    if scaling:
+        from survey.bench_scaling import scaling as rows_of_scaling
+
+        rows = []
+        for row in rows_of_scaling():
+            rows.append(row)
+            if not as_json:
+                pairs = zip(row["sizes"], row["seconds"], strict=True)
+                shown = "  ".join(f"{size:g}: {seconds:.3f} s" for size, seconds in pairs)
+                typer.echo(f"{row['name']:18}{shown}  exponent {row['exponent']:.2f}")
+        if as_json:
+            whole = {"scaling": rows} | benchmark.machine(threads=threads)
+            typer.echo(json.dumps(whole, indent=1))
+        return
+
     cases = {}
-    for name, figures in benchmark.bench(threads=threads):
-        cases[name] = figures
+    for case, figures in benchmark.bench(threads=threads, merit=merit):
+        cases[case] = figures
         if not as_json:
+            shown = {key: value for key, value in figures.items() if isinstance(value, float)}
             typer.echo(
-                f"{name:14}" + "".join(f"  {key} {value:.4g}" for key, value in figures.items())
+                f"{case:14}" + "".join(f"  {key} {value:.4g}" for key, value in shown.items())
             )
     if as_json:
         typer.echo(json.dumps({"cases": cases} | benchmark.machine(threads=threads), indent=1))

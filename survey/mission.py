@@ -10,7 +10,7 @@ from pathlib import Path
 
 from survey.cloud.frame_points import bottom_points, find_water, surface_points
 from survey.cloud.georeference import pixel_rays
-from survey.cloud.ranging import first_echo, last_echo
+from survey.cloud.ranging import blind_at, first_echo, last_echo
 from survey.cloud.record import pixel_record
 from survey.cloud.truth import true_targets
 from survey.errors import UserError
@@ -26,14 +26,15 @@ from survey.transport.random import COUNTS, chance
 
 
 def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
-    """Fly one flash: expected light, counts, ranges, points, and the truth beside them."""
-    engine, noise, water = mission.engine, mission.noise, mission.engine.water
+    """Fly one flash: expected light, readings, ranges, points, and the truth beside them."""
+    engine, water = mission.engine, mission.engine.water
+    noise = mission.noise_at(frame.measured)
     waveforms = engine.flash(pose=frame.pose, frame=frame.index)
     draws = chance(seed=engine.seed, purpose=COUNTS, frame=frame.index)
-    counts = mission.detector.count(waveforms.total + noise.steady, draws)
+    readings = mission.detector.read(waveforms.total + noise.steady_light, draws)
 
-    rays = pixel_rays(camera=mission.camera, pose=frame.pose)
-    first = first_echo(counts=counts, noise=noise)
+    rays = pixel_rays(camera=mission.camera, pose=frame.measured)
+    first = first_echo(counts=readings.counts, noise=noise)
     line = find_water(
         first=first,
         frame=frame,
@@ -41,10 +42,14 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
         expected_level=engine.surface.level,
         refractive_index=water.refractive_index,
     )
-    bottom = last_echo(counts=counts, noise=noise, surface_time=line.surface_time)
+    bottom = last_echo(counts=readings.counts, noise=noise, surface_time=line.surface_time)
 
     targets = true_targets(
-        seabed=mission.seabed, surface=engine.surface, water=water, pose=frame.pose, rays=rays
+        seabed=mission.seabed,
+        surface=engine.surface,
+        water=water,
+        pose=frame.pose,
+        rays=pixel_rays(camera=mission.camera, pose=frame.pose),
     )
     on_surface = surface_points(line=line, first=first, frame=frame, targets=targets)
     on_bottom = bottom_points(
@@ -59,14 +64,15 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
     )
     record = pixel_record(
         waveforms=waveforms,
-        saturated=mission.detector.saturated(counts),
+        saturated=blind_at(blind=readings.blind, time=targets.time, noise=noise),
         bottom=bottom,
         points=on_bottom,
         targets=targets,
         noise=noise,
         group_index=water.group_index,
     )
-    return FrameResult(bottom=on_bottom, surface=on_surface, record=record)
+    raw = mission.raw_of(readings)
+    return FrameResult(bottom=on_bottom, surface=on_surface, record=record, raw=raw)
 
 
 def fly(

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
+from math import hypot
 
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.ranging import NoiseModel
+from survey.cloud.noise import NoiseModel
+from survey.cloud.posed_noise import PosedNoise
+from survey.cloud.ranging import surface_walk
+from survey.cloud.raw import RawReadings, raw_readings
 from survey.flight.pose import Frame, Pose
-from survey.flight.trajectory import fly_lines, footprint
+from survey.flight.trajectory import footprints, require_air
 from survey.optics.background import background_power
+from survey.products.reach import WaterClarity
 from survey.products.run_products import ProductSettings
 from survey.scenario import components
 from survey.scenario.scenario import Scenario
 from survey.sensor.camera import Camera
-from survey.sensor.detector import IdealCounter
+from survey.sensor.detector import Detector, Readings
 from survey.transport.engine import Engine
 from survey.transport.waveforms import pulse_taps
 from terrain.generators import Ground, plane
@@ -26,6 +32,7 @@ FloatArray = NDArray[np.float64]
 
 MODEL_FLASHES = 4
 FIRST_MODEL_FRAME = 1 << 31
+RAW_STEPS = {"none": None, "sampled": 8, "all": 1}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,11 +41,32 @@ class Mission:
 
     frames: Sequence[Frame]
     camera: Camera
-    detector: IdealCounter
+    detector: Detector
     seabed: Seabed
     engine: Engine
-    noise: NoiseModel
+    posed_noise: PosedNoise
     products: ProductSettings
+    raw_step: int | None
+
+    @property
+    def noise(self) -> NoiseModel:
+        """The noise model of the level sensor."""
+        return self.posed_noise.level
+
+    def noise_at(self, pose: Pose) -> NoiseModel:
+        """Return the noise model at a measured pose."""
+        return self.posed_noise.at(pose)
+
+    def raw_of(self, readings: Readings) -> RawReadings | None:
+        """Return the part of the readings that is kept; None where none is."""
+        if self.raw_step is None:
+            return None
+        return raw_readings(
+            readings,
+            step=self.raw_step,
+            bin_start=self.noise.bin_start,
+            bin_width=self.noise.bin_width,
+        )
 
 
 def prepare(scenario: Scenario) -> Mission:
@@ -50,16 +78,17 @@ def prepare(scenario: Scenario) -> Mission:
         With every fault, each in a line of its own.
     """
     camera, surface = components.camera(scenario), components.sea_surface(scenario)
-    frames = fly_lines(components.flight_plan(scenario))
+    frames = components.frames(scenario)
     seabed = components.seabed(scenario)
-    seabed.require_coverage([footprint(camera, frame.pose, surface.level) for frame in frames])
+    seabed.require_coverage(footprints(camera, frames, surface.level))
+    require_air(frames, highest=seabed.grid.z_high)
     return Mission(
         frames=frames,
         camera=camera,
         detector=components.detector(scenario),
         seabed=seabed,
         engine=_engine(scenario, seabed),
-        noise=noise_model(scenario, frames[0]),
+        posed_noise=posed_noise(scenario, frames[0]),
         products=ProductSettings(
             title=scenario.mission.title,
             description=scenario.mission.description,
@@ -68,53 +97,87 @@ def prepare(scenario: Scenario) -> Mission:
             thinning=scenario.processing.thinning_m,
             grid=scenario.processing.grid_m,
             pixel_spacing=camera.pixel_tangent * scenario.flight.height_m,
+            survey_area=components.survey_area(scenario),
+            trajectory_files=scenario.navigation.trajectory_files,
+            deviations=components.navigation(scenario).deviations,
+            clarity=WaterClarity.of(components.water(scenario)),
         ),
+        raw_step=RAW_STEPS[scenario.processing.keep_waveforms],
     )
 
 
-def noise_model(scenario: Scenario, frame: Frame) -> NoiseModel:
-    """Return what a flash counts over water without a bottom, and the thresholds above it.
+def posed_noise(scenario: Scenario, frame: Frame) -> PosedNoise:
+    """Return what a flash reads over water without a bottom, and the thresholds above it.
 
     The expected column is that of the scenario's water, from flashes of its own over a bottom that
     nothing can reach; a survey would know it from its deep water.
     """
-    receiver, laser = components.receiver(scenario), components.laser(scenario)
     engine = _engine(scenario, _unreachable_bottom(scenario))
     pose = Pose(
-        position=np.array([0.0, 0.0, frame.pose.position[2]]),
+        position=np.array([0.0, 0.0, frame.measured.position[2]]),
         roll=0.0,
         pitch=0.0,
-        heading=frame.pose.heading,
+        heading=frame.measured.heading,
     )
-    light, variance = _mean_flash(engine, pose)
-    steady = _steady_counts(scenario)
-    pad = int(np.ceil(3.0 * laser.pulse_sigma / receiver.bin_width))
+    light, surface, variance = _mean_flash(engine, pose)
+    radiance = components.background_radiance(scenario)
+    build = partial(noise_model, scenario, steady_light(scenario, radiance))
+    level = build(light, variance)
+    return PosedNoise(
+        level=replace(level, surface_walk=surface_walk(level)),
+        pose=pose,
+        camera=engine.camera,
+        water_level=engine.surface.level,
+        surface=surface,
+        column=light - surface,
+        variance=variance,
+        build=build,
+    )
+
+
+def noise_model(
+    scenario: Scenario, steady: float, light: FloatArray, variance: FloatArray
+) -> NoiseModel:
+    """Return the noise model of expected light without a bottom (rows, columns, bins).
+
+    ``steady`` is that of sun and darkness in a bin, ``variance`` the squared Monte Carlo error of
+    the light in one flash.
+    """
+    receiver, laser = components.receiver(scenario), components.laser(scenario)
+    detector = components.detector(scenario)
+    sigma = hypot(laser.pulse_sigma, detector.timing_sigma)
+    pad = int(np.ceil(3.0 * sigma / receiver.bin_width))
     return NoiseModel.build(
         settings=components.ranging_settings(scenario),
-        steady=steady,
-        bottomless=light + steady,
+        detector=detector,
+        steady_light=steady,
+        bottomless_light=light + steady,
         flash_variance=variance,
         model_flashes=MODEL_FLASHES,
-        pulse=pulse_taps(sigma=laser.pulse_sigma, width=receiver.bin_width, pad=pad),
+        pulse=pulse_taps(sigma=sigma, width=receiver.bin_width, pad=pad),
         bin_start=receiver.gate_start,
         bin_width=receiver.bin_width,
     )
 
 
-def _mean_flash(engine: Engine, pose: Pose) -> tuple[FloatArray, FloatArray]:
-    """Return mean photo-electrons and mean squared error of the model's flashes, one at a time."""
+def _mean_flash(engine: Engine, pose: Pose) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return mean photo-electrons, those of the surface, and mean squared error of a flash.
+
+    Of the model's flashes, one at a time.
+    """
     shape = (*engine.camera.shape, engine.receiver.bins)
-    light, variance = np.zeros(shape), np.zeros(shape)
+    light, surface, variance = np.zeros(shape), np.zeros(shape), np.zeros(shape)
     for number in range(MODEL_FLASHES):
         flash = engine.flash(pose=pose, frame=FIRST_MODEL_FRAME + number)
         light += flash.total / MODEL_FLASHES
+        surface += flash.origin("surface") / MODEL_FLASHES
         variance += flash.variance.sum(axis=0) / MODEL_FLASHES
-    return light, variance
+    return light, surface, variance
 
 
 def _engine(scenario: Scenario, seabed: Seabed) -> Engine:
     receiver = components.receiver(scenario)
-    efficiency = components.detector(scenario).quantum_efficiency
+    efficiency = components.detector(scenario).photo_electrons_per_photon
     return Engine(
         seabed=seabed,
         surface=components.sea_surface(scenario),
@@ -128,17 +191,24 @@ def _engine(scenario: Scenario, seabed: Seabed) -> Engine:
     )
 
 
-def _steady_counts(scenario: Scenario) -> float:
-    """Return sun and dark counts of a pixel in one bin [1], equations (1) and (8)."""
+def steady_light(scenario: Scenario, radiance: float) -> float:
+    """Return photo-electrons of sun and darkness in a bin of a pixel [1], equations (1), (8).
+
+    Parameters
+    ----------
+    scenario : Scenario
+    radiance : float
+        Of the background [W / (m2 m sr)].
+    """
     receiver, detector = components.receiver(scenario), components.detector(scenario)
     power = background_power(
-        radiance=components.background_radiance(scenario),
+        radiance=radiance,
         filter_width=receiver.filter_width,
         aperture_area=receiver.aperture_area,
         solid_angle=components.camera(scenario).pixel_tangent ** 2,
     )
     photons = power * receiver.optics_transmission / components.laser(scenario).photon_energy
-    rate = photons * detector.quantum_efficiency + detector.dark_count_rate
+    rate = photons * detector.photo_electrons_per_photon + detector.dark_count_rate
     return rate * receiver.bin_width
 
 

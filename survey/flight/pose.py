@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 
+NORTH_EAST_DOWN_TO_MAP = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
+FULL_TURN = 2.0 * np.pi
+
 
 @dataclass(frozen=True, kw_only=True)
 class Pose:
@@ -37,18 +40,46 @@ class Pose:
         >>> (level.body_to_map() @ [1.0, 0.0, 0.0]).round(12) + 0.0
         array([1., 0., 0.])
         """
-        cr, sr = np.cos(self.roll), np.sin(self.roll)
-        cp, sp = np.cos(self.pitch), np.sin(self.pitch)
-        ch, sh = np.cos(self.heading), np.sin(self.heading)
-        to_north_east_down = np.array(
-            [
-                [ch * cp, ch * sp * sr - sh * cr, ch * sp * cr + sh * sr],
-                [sh * cp, sh * sp * sr + ch * cr, sh * sp * cr - ch * sr],
-                [-sp, cp * sr, cp * cr],
-            ]
+        return np.asarray(
+            NORTH_EAST_DOWN_TO_MAP @ turned(roll=self.roll, pitch=self.pitch, yaw=self.heading)
         )
-        north_east_down_to_map = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
-        return np.asarray(north_east_down_to_map @ to_north_east_down)
+
+    @classmethod
+    def from_body_to_map(cls, *, position: FloatArray, matrix: FloatArray) -> Pose:
+        """Return the pose of a matrix that `body_to_map` gives; the heading is in [0, 2 pi).
+
+        Examples
+        --------
+        >>> pose = Pose(position=np.zeros(3), roll=0.1, pitch=-0.2, heading=3.0)
+        >>> again = Pose.from_body_to_map(position=np.zeros(3), matrix=pose.body_to_map())
+        >>> round(again.roll, 12), round(again.pitch, 12), round(again.heading, 12)
+        (0.1, -0.2, 3.0)
+        """
+        to_down = NORTH_EAST_DOWN_TO_MAP @ matrix
+        return cls(
+            position=position,
+            roll=float(np.arctan2(to_down[2, 1], to_down[2, 2])),
+            pitch=float(-np.arcsin(np.clip(to_down[2, 0], -1.0, 1.0))),
+            heading=float(np.arctan2(to_down[1, 0], to_down[0, 0]) % FULL_TURN),
+        )
+
+
+def turned(*, roll: float, pitch: float, yaw: float) -> FloatArray:
+    """Return the matrix (3, 3) from axes forward, right, down to those before the turns.
+
+    First about forward by roll, then about right by pitch, last about down by yaw [rad]
+    (aerospace sequence 3-2-1 from outside): from a body to (north, east, down).
+    """
+    cr, sr = np.cos(roll), np.sin(roll)
+    cp, sp = np.cos(pitch), np.sin(pitch)
+    ch, sh = np.cos(yaw), np.sin(yaw)
+    return np.array(
+        [
+            [ch * cp, ch * sp * sr - sh * cr, ch * sp * cr + sh * sr],
+            [sh * cp, sh * sp * sr + ch * cr, sh * sp * cr - ch * sr],
+            [-sp, cp * sr, cp * cr],
+        ]
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,10 +95,18 @@ class Frame:
     time : float
         Seconds since the start of the mission [s].
     pose : Pose
-        True pose at the flash.
+        True pose at the flash: what the light sees.
+    navigation : Pose, optional
+        The pose as navigation measured it; without one navigation is perfect.
     """
 
     index: int
     line: int
     time: float
     pose: Pose
+    navigation: Pose | None = None
+
+    @property
+    def measured(self) -> Pose:
+        """The pose that georeferencing knows."""
+        return self.pose if self.navigation is None else self.navigation

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from survey.flight.area import AreaPlan
 from survey.flight.plan import FlightPlan
 from survey.flight.pose import Frame, Pose
+from survey.flight.recorded import RecordedPlan
 
 FloatArray = NDArray[np.float64]
+
+Plan = FlightPlan | AreaPlan | RecordedPlan
+SHOWN = 5
 
 
 class FieldOfView(Protocol):
@@ -21,8 +27,10 @@ class FieldOfView(Protocol):
         """Half of the field of view forward and to the right, as tangents [1]."""
 
 
-def fly_lines(plan: FlightPlan) -> list[Frame]:
-    """Return the frames of a plan in the order of flight, level and without navigation errors.
+def fly_lines(plan: Plan) -> list[Frame]:
+    """Return the frames of a plan in the order of flight, without navigation errors.
+
+    Straight lines are flown level; a recorded flight moves as it did.
 
     Examples
     --------
@@ -34,7 +42,26 @@ def fly_lines(plan: FlightPlan) -> list[Frame]:
     >>> [frame.time for frame in fly_lines(plan)]
     [0.0, 1.0, 2.0, 62.0, 63.0, 64.0]
     """
-    return [_frame(plan, index) for index in range(plan.frame_count)]
+    if isinstance(plan, RecordedPlan):
+        return plan.frames()
+    frames: list[Frame] = []
+    begin, before = 0.0, None
+    for number, line in enumerate(plan.survey_lines):
+        if before is not None:
+            begin += before.times[-1] + plan.turn_between(before, line)
+        places = line.places
+        headings = plan.crabbed(line.course, plan.speeds(places))
+        frames += [
+            Frame(
+                index=len(frames) + flash,
+                line=number,
+                time=float(begin + line.times[flash]),
+                pose=Pose(position=position, roll=0.0, pitch=0.0, heading=float(headings[flash])),
+            )
+            for flash, position in enumerate(np.column_stack([places, plan.altitudes(places)]))
+        ]
+        before = line
+    return frames
 
 
 def footprint(camera: FieldOfView, pose: Pose, elevation: float) -> FloatArray:
@@ -87,21 +114,48 @@ def footprint(camera: FieldOfView, pose: Pose, elevation: float) -> FloatArray:
     return outline
 
 
-def _frame(plan: FlightPlan, index: int) -> Frame:
-    line, flash = divmod(index, plan.frames_per_line)
-    backwards = plan.turn == "alternate" and line % 2 == 1
-    step = plan.frames_per_line - 1 - flash if backwards else flash
-    ahead = np.array([np.sin(plan.heading), np.cos(plan.heading)])
-    right = np.array([np.cos(plan.heading), -np.sin(plan.heading)])
-    place = plan.start + step * plan.flash_spacing * ahead + line * plan.line_spacing * right
-    return Frame(
-        index=index,
-        line=line,
-        time=line * (plan.line_duration + plan.turn_time) + flash / plan.flash_rate,
-        pose=Pose(
-            position=np.array([place[0], place[1], plan.altitude]),
-            roll=0.0,
-            pitch=0.0,
-            heading=(plan.heading + np.pi) % (2.0 * np.pi) if backwards else plan.heading,
-        ),
+def footprints(camera: FieldOfView, frames: Sequence[Frame], elevation: float) -> list[FloatArray]:
+    """Return the outline (4, 2) of every frame's view on a level plane, see `footprint`.
+
+    Raises
+    ------
+    ValueError
+        Naming the first frames that see no such plane, a line each.
+    """
+    outlines, faults = [], []
+    for frame in frames:
+        try:
+            outlines.append(footprint(camera, frame.pose, elevation))
+        except ValueError:
+            faults.append(_lost(frame, elevation))
+    if len(faults) > SHOWN:
+        faults[SHOWN:] = [f"flight: and {len(faults) - SHOWN} other frames"]
+    if faults:
+        raise ValueError("\n".join(faults))
+    return outlines
+
+
+def require_air(frames: Sequence[Frame], *, highest: float) -> None:
+    """Refuse a flight that comes down to the ground's highest place [m].
+
+    Raises
+    ------
+    ValueError
+        Naming the lowest frame.
+    """
+    lowest = min(frames, key=lambda frame: float(frame.pose.position[2]))
+    height = float(lowest.pose.position[2])
+    if height <= highest:
+        raise ValueError(
+            f"flight: frame {lowest.index} is at {height:.1f} m, and the ground rises to "
+            f"{highest:.1f} m. Fly higher"
+        )
+
+
+def _lost(frame: Frame, elevation: float) -> str:
+    pose = frame.pose
+    return (
+        f"flight: frame {frame.index}, {frame.time:.1f} s: {pose.position[2] - elevation:.0f} m "
+        f"above the water, roll {np.degrees(pose.roll):.1f}, pitch {np.degrees(pose.pitch):.1f} "
+        "degrees: a corner of the view sees no water. Leave it out, or tilt the sensor less"
     )

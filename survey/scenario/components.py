@@ -1,4 +1,4 @@
-"""From a scenario to the parts of a mission: here and in `seabed_parts` units are converted.
+"""From a scenario to the parts of a mission: here and in `*_parts` units are converted.
 
 Every function returns a part in SI units and radians. The parts are imported when they are built,
 so that checking a scenario stays quick.
@@ -10,22 +10,35 @@ from math import floor, radians
 from typing import TYPE_CHECKING
 
 from survey.errors import UserError
-from survey.scenario.rules import gate_start_ns
+from survey.scenario.flight_sections import LinesFlight
 from survey.scenario.scenario import Scenario
+from survey.scenario.sun import (
+    air_extinction_per_m,
+    stated_irradiance_w_m2_nm,
+    water_reflectance,
+)
+from survey.scenario.times import gate_start_ns
 
 if TYPE_CHECKING:
-    from survey.cloud.ranging import RangingSettings
-    from survey.flight.plan import FlightPlan
-    from survey.optics.background import Sky
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from survey.cloud.noise import RangingSettings
+    from survey.flight.navigation import Navigation
+    from survey.flight.pose import Frame
+    from survey.flight.trajectory import Plan
+    from survey.optics.background import CoxMunkGlint, Sky
     from survey.optics.water import Water
     from survey.sensor.camera import Camera
-    from survey.sensor.detector import IdealCounter
+    from survey.sensor.detector import Detector
     from survey.sensor.laser import Laser
     from survey.sensor.receiver import Receiver
     from survey.transport.settings import TransportSettings
     from terrain.map_frame import MapFrame
     from terrain.sea_surface import SeaSurface
     from terrain.seabed import Seabed
+
+    FloatArray = NDArray[np.float64]
 
 NANO = 1e-9
 MICRO = 1e-6
@@ -35,12 +48,14 @@ NIGHT_RADIANCE_W_M2_UM_SR = 1e-3  # [Lisenko2017], night without a moon
 
 def map_frame(scenario: Scenario) -> MapFrame:
     """Return the local frame: its origin is the flight's start, rounded down to a kilometre."""
+    from survey.scenario.flight_parts import start_on_map
     from terrain.map_frame import MapFrame
 
-    flight, mission = scenario.flight, scenario.mission
+    mission = scenario.mission
+    east, north = start_on_map(scenario.flight, epsg=mission.crs_epsg, folder=scenario.folder)
     return MapFrame(
-        easting=floor(flight.start_easting_m / ORIGIN_STEP_M) * ORIGIN_STEP_M,
-        northing=floor(flight.start_northing_m / ORIGIN_STEP_M) * ORIGIN_STEP_M,
+        easting=floor(east / ORIGIN_STEP_M) * ORIGIN_STEP_M,
+        northing=floor(north / ORIGIN_STEP_M) * ORIGIN_STEP_M,
         epsg=mission.crs_epsg,
         vertical_epsg=mission.vertical_epsg,
     )
@@ -86,29 +101,19 @@ def receiver(scenario: Scenario) -> Receiver:
     )
 
 
-def detector(scenario: Scenario) -> IdealCounter:
-    """Return the photon counter behind every pixel."""
-    from survey.sensor.detector import IdealCounter
+def detector(scenario: Scenario) -> Detector:
+    """Return the detector behind every pixel."""
+    from survey.scenario.detector_parts import build_detector
 
-    given = scenario.detector
-    return IdealCounter(
-        quantum_efficiency=given.quantum_efficiency,
-        dark_count_rate=given.dark_count_rate_hz,
-        max_counts_per_bin=given.max_counts_per_bin,
-    )
+    return build_detector(scenario)
 
 
 def water(scenario: Scenario) -> Water:
     """Return the water."""
-    from survey.optics.water import petzold_water
+    from survey.scenario.water_parts import build_water
 
-    given = scenario.water
-    return petzold_water(
-        given.type,
-        absorption=given.absorption_per_m,
-        scattering=given.scattering_per_m,
-        refractive_index=given.refractive_index,
-        group_index=given.group_index,
+    return build_water(
+        scenario.water, wavelength_nm=scenario.laser.wavelength_nm, folder=scenario.folder
     )
 
 
@@ -121,22 +126,48 @@ def sea_surface(scenario: Scenario) -> SeaSurface:
         level=given.water_level_m,
         wind_speed=given.wind_speed_m_s,
         wind_from=radians(given.wind_from_deg),
-        correlation_length=given.slope_correlation_length_m,
     )
 
 
 def sky(scenario: Scenario) -> Sky:
-    """Return the sun and the air above the sea."""
+    """Return the sun, the air above the sea, and how the sea sends their light up."""
     from survey.optics.background import Sky
 
-    given = scenario.sun
+    given, flight = scenario.sun, scenario.flight
+    layered = given.model == "layered"
+    extinction = air_extinction_per_m(given, flight) if layered else 0.0
     return Sky(
         zenith=radians(given.zenith_deg),
         wind_speed=scenario.surface.wind_speed_m_s,
         optical_thickness=given.optical_thickness,
-        solar_irradiance=given.solar_irradiance_w_m2_nm / NANO,
+        solar_irradiance=_solar_irradiance(scenario),
         legendre_moment=given.legendre_moment,
-        water_reflectance=given.water_reflectance,
+        water_reflectance=water_reflectance(given, scenario.water),
+        model=given.model,
+        layer_thickness=min(extinction * flight.height_m, given.optical_thickness),
+        glint=_glint(scenario) if given.glint == "cox_munk" else None,
+    )
+
+
+def _solar_irradiance(scenario: Scenario) -> float:
+    """Return the spectral solar constant, as stated or the mean over the filter [W/m3]."""
+    if scenario.sun.spectrum == "stated":
+        return stated_irradiance_w_m2_nm(scenario.sun) / NANO
+    from survey.optics.solar_spectrum import mean_solar_irradiance
+
+    return mean_solar_irradiance(
+        wavelength=laser(scenario).wavelength, width=receiver(scenario).filter_width
+    )
+
+
+def _glint(scenario: Scenario) -> CoxMunkGlint:
+    """Return the sea's glint by measured slopes."""
+    from survey.optics.background import CoxMunkGlint
+
+    return CoxMunkGlint(
+        sea=sea_surface(scenario),
+        sun_azimuth=radians(scenario.sun.azimuth_deg),
+        refractive_index=scenario.water.refractive_index,
     )
 
 
@@ -151,25 +182,55 @@ def background_radiance(scenario: Scenario) -> float:
     return sky(scenario).radiance() if given.day else NIGHT_RADIANCE_W_M2_UM_SR / MICRO
 
 
-def flight_plan(scenario: Scenario) -> FlightPlan:
+def flight_plan(scenario: Scenario) -> Plan:
     """Return the flight plan in the local frame."""
-    from survey.flight.plan import FlightPlan
+    from survey.scenario.flight_parts import build_plan
 
-    given, frame = scenario.flight, map_frame(scenario)
-    return FlightPlan(
-        start=(given.start_easting_m - frame.easting, given.start_northing_m - frame.northing),
-        heading=radians(given.heading_deg),
-        height=given.height_m,
-        water_level=scenario.surface.water_level_m,
-        speed=given.speed_m_s,
-        flash_rate=given.flash_rate_hz,
-        frames_per_line=given.frames_per_line,
-        lines=given.lines,
-        swath=2.0 * camera(scenario).half_tangents[1] * given.height_m,
-        sidelap=given.sidelap,
-        turn=given.turn,
-        turn_time=given.turn_time_s,
+    frame = map_frame(scenario)
+    return build_plan(
+        scenario.flight,
+        view=camera(scenario).half_tangents,
+        water_level_m=scenario.surface.water_level_m,
+        origin=(frame.easting, frame.northing),
+        epsg=frame.epsg,
+        folder=scenario.folder,
     )
+
+
+def flight_size(scenario: Scenario) -> str:
+    """Return how many lines and frames a flight has, in words."""
+    flight = scenario.flight
+    if isinstance(flight, LinesFlight):
+        return f"lines x frames: {flight.lines} x {flight.frames_per_line}"
+    plan = flight_plan(scenario)
+    return f"lines: {plan.line_count}, frames: {plan.frame_count}"
+
+
+def frames(scenario: Scenario) -> list[Frame]:
+    """Return every flash with the sensor's true pose and the one that navigation says."""
+    from survey.flight.motion import CHANNELS, moved
+    from survey.flight.navigation import QUANTITIES, navigated
+    from survey.flight.trajectory import fly_lines
+    from survey.scenario.motion_parts import build_motion
+    from survey.transport.random import MOTION, NAVIGATION, chance
+
+    seed = scenario.mission.seed
+    motions = [chance(seed=seed, purpose=MOTION, frame=i) for i in range(len(CHANNELS))]
+    errors = [chance(seed=seed, purpose=NAVIGATION, frame=i) for i in range(len(QUANTITIES))]
+    flown = moved(fly_lines(flight_plan(scenario)), build_motion(scenario.motion), motions)
+    return navigated(flown, navigation(scenario), errors)
+
+
+def navigation(scenario: Scenario) -> Navigation:
+    """Return the errors of navigation and the sensor's mounting."""
+    from survey.scenario.motion_parts import build_navigation
+
+    return build_navigation(scenario.navigation)
+
+
+def survey_area(scenario: Scenario) -> FloatArray | None:
+    """Return the ring (n, 2) of the ordered area in the local frame [m]; None without one."""
+    return getattr(flight_plan(scenario), "polygon", None)
 
 
 def transport_settings(scenario: Scenario) -> TransportSettings:
@@ -178,20 +239,18 @@ def transport_settings(scenario: Scenario) -> TransportSettings:
 
     given = scenario.transport
     return TransportSettings(
-        forward_walks_per_m2=given.forward_walks_per_m2,
-        backward_walks_per_pixel=given.backward_walks_per_pixel,
+        walks_per_pixel=given.walks_per_pixel,
         replicates=given.replicates,
+        tracks_per_replicate=given.tracks_per_replicate,
         split_angle=radians(given.split_angle_deg),
-        patch_size=given.patch_size_m,
-        layer_thickness=given.layer_thickness_m,
-        cell_size=given.cell_size_m,
+        column_spacing=given.column_spacing,
         illumination=scenario.laser.illumination,
     )
 
 
 def ranging_settings(scenario: Scenario) -> RangingSettings:
     """Return how echoes are found in the counts."""
-    from survey.cloud.ranging import RangingSettings
+    from survey.cloud.noise import RangingSettings
 
     given = scenario.processing
     width_ns = scenario.laser.pulse_width_ns if given.echo_gate_ns is None else given.echo_gate_ns
@@ -208,16 +267,14 @@ def seabed(scenario: Scenario) -> Seabed:
     UserError
         When the parts do not fit.
     """
-    from survey.flight.trajectory import fly_lines, footprint
+    from survey.flight.trajectory import footprints
     from survey.scenario.seabed_parts import bare_seabed, with_objects
     from terrain.file_faults import SeabedFileError
 
     frame = map_frame(scenario)
-    outlines = [
-        footprint(camera(scenario), flash.pose, scenario.surface.water_level_m)
-        for flash in fly_lines(flight_plan(scenario))
-    ]
+    level = scenario.surface.water_level_m
     try:
+        outlines = footprints(camera(scenario), frames(scenario), level)
         return with_objects(bare_seabed(scenario, frame, outlines), scenario, frame)
     except SeabedFileError:
         raise

@@ -69,25 +69,30 @@ def _from_here(file: Path) -> Path:
 def parse_overrides(settings: Sequence[str]) -> dict[str, Any]:
     """Return values by dotted key from ``section.key=value``; a bare word is text.
 
+    ``section={key=value, ...}`` stands for a whole section, in TOML.
+
     Examples
     --------
     >>> parse_overrides(["water.type=harbor", "flight.lines=2", "sun.day=false"])
     {'water.type': 'harbor', 'flight.lines': 2, 'sun.day': False}
+    >>> parse_overrides(['seabed={kind="plane", depth_m=50}'])
+    {'seabed': {'kind': 'plane', 'depth_m': 50}}
 
     Raises
     ------
     ScenarioError
-        When a setting has no equals sign or no section.
+        When a setting has no equals sign, or neither a key nor a table for its section.
     """
+    pairs = [setting.partition("=") for setting in settings]
+    changes = [(key.strip(), _value(text.strip())) for key, _, text in pairs]
     faults = [
-        Fault(setting, "not a setting. Write section.key=value.")
-        for setting in settings
-        if "." not in setting.partition("=")[0] or "=" not in setting
+        Fault(setting, "not a setting. Write section.key=value or section={key=value, ...}.")
+        for setting, (key, value) in zip(settings, changes, strict=True)
+        if "=" not in setting or not key or ("." not in key and not isinstance(value, dict))
     ]
     if faults:
         raise ScenarioError("--set", faults)
-    pairs = (setting.partition("=") for setting in settings)
-    return {key.strip(): _value(text.strip()) for key, _, text in pairs}
+    return dict(changes)
 
 
 def parse_frames(text: str | None, count: int) -> range | None:

@@ -4,37 +4,19 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterator, Mapping
-from math import hypot
 from pathlib import Path
 from typing import Any
 
-from scipy.constants import c
-
+from survey.scenario.detector_rules import DETECTOR_RULES
 from survey.scenario.faults import Fault
+from survey.scenario.flight_rules import FLIGHT_RULES
+from survey.scenario.gate_rules import gate_holds_the_water
 from survey.scenario.seabed_sections import ChannelSeabed, SeabedSection
-from survey.scenario.sections import Camera, Flight, Laser, Mission, Receiver, Section, Water
+from survey.scenario.sections import Camera, Mission, Receiver, Section
+from survey.scenario.sun import SUN_RULES
+from survey.scenario.water_rules import WATER_RULES
 
-GATE_LEAD_NS = 30.0
 LARGEST_FRAME_BINS = 200_000_000
-LARGEST_FRAME_COUNT = 1_000_000
-
-
-def gate_start_ns(receiver: Receiver, flight: Flight) -> float:
-    """Return when the gate opens after the pulse: as stated, or 30 ns before the nadir surface."""
-    if receiver.gate_start_ns is not None:
-        return receiver.gate_start_ns
-    return max(0.0, two_way_ns(flight.height_m) - GATE_LEAD_NS)
-
-
-def two_way_ns(distance_m: float) -> float:
-    """Return the time that light takes there and back [ns].
-
-    Examples
-    --------
-    >>> round(two_way_ns(200.0), 2)
-    1334.26
-    """
-    return 2.0e9 * distance_m / c
 
 
 def broken_rules(sound: Mapping[str, Any], folder: Path) -> list[Fault]:
@@ -46,43 +28,6 @@ def broken_rules(sound: Mapping[str, Any], folder: Path) -> list[Fault]:
         if all(need in parts for need in needs):
             faults += rule(**{need: parts[need] for need in needs})
     return faults
-
-
-def group_slower_than_phase(water: Water) -> Iterator[Fault]:
-    """Light's group is slower than its phase in water: dispersion is normal there."""
-    if water.group_index < water.refractive_index:
-        yield Fault(
-            "water.group_index",
-            f"{water.group_index:g} is below refractive_index {water.refractive_index:g}. "
-            "A pulse in water is slower than its phase; raise it.",
-        )
-
-
-def gate_holds_the_water(
-    receiver: Receiver, flight: Flight, camera: Camera, laser: Laser
-) -> Iterator[Fault]:
-    """The gate opens before the first surface echo and closes after the last one."""
-    start = gate_start_ns(receiver, flight)
-    end = start + receiver.bins * receiver.bin_width_ns
-    half = 0.5 * camera.pixel_footprint_m / camera.design_range_m
-    slant = hypot(1.0, half * camera.rows, half * camera.columns)
-    first = two_way_ns(flight.height_m) - laser.pulse_width_ns
-    last = two_way_ns(flight.height_m * slant) + laser.pulse_width_ns
-    if start > first:
-        yield Fault(
-            "receiver.gate_start_ns",
-            f"{start:g} is after the water surface's first echo at {first:.0f} ns. Open earlier.",
-        )
-    if end < last:
-        yield Fault(
-            "receiver.bins",
-            f"the gate closes at {end:.0f} ns, before the corner pixels see the water surface "
-            f"at {last:.0f} ns. Take at least {_bins_until(last, start, receiver)} bins.",
-        )
-
-
-def _bins_until(time_ns: float, start_ns: float, receiver: Receiver) -> int:
-    return int((time_ns - start_ns) / receiver.bin_width_ns) + 1
 
 
 def channel_is_deeper(seabed: SeabedSection) -> Iterator[Fault]:
@@ -103,16 +48,6 @@ def frame_fits_in_memory(camera: Camera, receiver: Receiver) -> Iterator[Fault]:
             "receiver.bins",
             f"{camera.rows} x {camera.columns} pixels of {receiver.bins} bins are {size} numbers "
             f"a frame. Stay below {LARGEST_FRAME_BINS}.",
-        )
-
-
-def mission_is_finite(flight: Flight) -> Iterator[Fault]:
-    """A mission has no more frames than file names have digits."""
-    count = flight.lines * flight.frames_per_line
-    if count > LARGEST_FRAME_COUNT:
-        yield Fault(
-            "flight.frames_per_line",
-            f"{count} frames in all. Stay below {LARGEST_FRAME_COUNT}.",
         )
 
 
@@ -165,12 +100,14 @@ def files_exist(seabed: SeabedSection, folder: Path) -> Iterator[Fault]:
 
 
 RULES: tuple[Callable[..., Iterator[Fault]], ...] = (
-    group_slower_than_phase,
+    *FLIGHT_RULES,
     gate_holds_the_water,
     channel_is_deeper,
     frame_fits_in_memory,
-    mission_is_finite,
     map_is_projected_in_metres,
     heights_are_in_metres,
     files_exist,
+    *DETECTOR_RULES,
+    *SUN_RULES,
+    *WATER_RULES,
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from copy import deepcopy
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -11,10 +11,18 @@ from typing import Any, cast
 
 from survey.scenario import sections
 from survey.scenario.faults import Fault, ScenarioError
-from survey.scenario.rules import broken_rules, gate_start_ns
+from survey.scenario.motion_sections import Motion, Navigation
+from survey.scenario.rules import broken_rules
 from survey.scenario.seabed_sections import SeabedSection
+from survey.scenario.sun import (
+    air_extinction_per_m,
+    stated_irradiance_w_m2_nm,
+    water_reflectance,
+)
+from survey.scenario.times import gate_start_ns
 from survey.scenario.toml_text import to_toml
 from survey.scenario.validate import validate
+from survey.scenario.water_sections import PetzoldWater
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,8 +33,8 @@ class Scenario:
 
     Parameters
     ----------
-    mission, flight, laser, camera, receiver, detector, water, surface, seabed, sun, transport,
-    processing, run : Section
+    mission, flight, motion, navigation, laser, camera, receiver, detector, water, surface, seabed,
+    sun, transport, processing, run : Section
         One for each section of the file, defaults filled in.
     name : str
         The file's name as it stands in faults.
@@ -38,6 +46,8 @@ class Scenario:
 
     mission: sections.Mission
     flight: sections.Flight
+    motion: Motion
+    navigation: Navigation
     laser: sections.Laser
     camera: sections.Camera
     receiver: sections.Receiver
@@ -91,25 +101,54 @@ class Scenario:
             Folder in which the text will lie: the files that it names are then given relative to
             that folder, otherwise as they were written.
         """
-        names = [part.name for part in fields(self) if part.compare]
-        tables = {name: getattr(self, name).model_dump() for name in names}
+        tables = self._tables()
         self._resolve(tables)
         if beside is not None:
-            for table in (tables["seabed"], *tables["seabed"]["objects"]):
-                if "file" in table:
-                    path = os.path.relpath(self.folder / table["file"], beside)
-                    table["file"] = Path(path).as_posix()
+            for table in _tables_with_a_file(tables):
+                path = os.path.relpath(self.folder / table["file"], beside)
+                table["file"] = Path(path).as_posix()
         return to_toml(tables)
+
+    @property
+    def files(self) -> list[str]:
+        """The files that the scenario names, as they were written."""
+        return [str(table["file"]) for table in _tables_with_a_file(self._tables())]
+
+    def _tables(self) -> dict[str, Any]:
+        names = [part.name for part in fields(self) if part.compare]
+        return {name: getattr(self, name).model_dump() for name in names}
 
     def _resolve(self, tables: dict[str, Any]) -> None:
         """Fill in the defaults that follow from other sections."""
-        from survey.optics.water import PAPER_COEFFICIENTS
+        if isinstance(self.water, PetzoldWater):
+            from survey.optics.water import PAPER_COEFFICIENTS
 
-        absorption, scattering = PAPER_COEFFICIENTS[self.water.type]
-        _default(tables["water"], "absorption_per_m", absorption)
-        _default(tables["water"], "scattering_per_m", scattering)
+            absorption, scattering = PAPER_COEFFICIENTS[self.water.type]
+            _default(tables["water"], "absorption_per_m", absorption)
+            _default(tables["water"], "scattering_per_m", scattering)
         _default(tables["receiver"], "gate_start_ns", gate_start_ns(self.receiver, self.flight))
         _default(tables["processing"], "echo_gate_ns", self.laser.pulse_width_ns)
+        self._resolve_sun(tables["sun"])
+
+    def _resolve_sun(self, table: dict[str, Any]) -> None:
+        """Fill in the numbers that no other key of the section says already."""
+        if self.sun.spectrum == "stated":
+            _default(table, "solar_irradiance_w_m2_nm", stated_irradiance_w_m2_nm(self.sun))
+        if self.sun.water_light == "stated":
+            _default(table, "water_reflectance", water_reflectance(self.sun, self.water))
+        if self.sun.model == "layered":
+            _default(table, "air_extinction_per_m", air_extinction_per_m(self.sun, self.flight))
+
+
+def _tables_with_a_file(value: Any) -> Iterator[dict[str, Any]]:
+    """Yield every table, at any depth, that names a file."""
+    if isinstance(value, dict):
+        if value.get("file") is not None:
+            yield value
+        value = list(value.values())
+    if isinstance(value, list):
+        for inner in value:
+            yield from _tables_with_a_file(inner)
 
 
 def _default(table: dict[str, Any], key: str, value: float) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.scenario import seabed_sections as kinds
+from survey.scenario.components import flight_plan
 from survey.scenario.scenario import Scenario
 from terrain.map_frame import MapFrame
 
@@ -46,10 +47,10 @@ class _Site:
     """Where a made seabed lies: the footprints, and the flight's start."""
 
     def __init__(self, scenario: Scenario, frame: MapFrame, outlines: Sequence[FloatArray]) -> None:
-        flight = scenario.flight
+        from survey.scenario.flight_parts import beginning
+
         self.frame, self.corners = frame, np.concatenate(outlines)
-        self.start = self.local(flight.start_easting_m, flight.start_northing_m)
-        self.heading = radians(flight.heading_deg)
+        self.start, self.heading = beginning(flight_plan(scenario))
 
     def local(self, easting: float, northing: float) -> FloatArray:
         """Return a point of the map in the local frame (2,) [m]."""

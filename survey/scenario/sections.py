@@ -38,19 +38,20 @@ class Mission(Section):
 
 
 class Flight(Section):
-    """Parallel lines; the height counts from the water level, sidelap at the water surface."""
+    """What every flight has; `survey.scenario.flight_sections` holds the kinds.
 
+    The height counts from the water level, whatever the ground below does.
+    """
+
+    kind: str
     height_m: Positive = 200.0
     speed_m_s: Positive = 100.0
     flash_rate_hz: Positive = 1.0
-    start_easting_m: float
-    start_northing_m: float
-    heading_deg: Bearing
-    frames_per_line: Count
-    lines: Count = 1
-    sidelap: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.2
-    turn: Literal["alternate", "same"] = "alternate"
-    turn_time_s: NotNegative = 60.0
+
+    @property
+    def heights_m(self) -> tuple[float, float]:
+        """Least and greatest height above the water that is planned."""
+        return self.height_m, self.height_m
 
 
 class Laser(Section):
@@ -84,20 +85,22 @@ class Receiver(Section):
 
 
 class Detector(Section):
-    """A photon counter."""
+    """What every detector has; `survey.scenario.detector_sections` holds the kinds.
 
-    kind: Literal["ideal"] = "ideal"
+    A frame may be a burst of pulses, whose readings are summed.
+    """
+
+    kind: str
     quantum_efficiency: Fraction
     dark_count_rate_hz: NotNegative
-    max_counts_per_bin: Annotated[int, Field(ge=1, le=65_535)] = 65_535
+    pulses_per_frame: Count = 1
+    burst_rate_hz: Positive = 1.0e5
 
 
 class Water(Section):
-    """A measured water; absorption and scattering may be overridden."""
+    """What every water has; `survey.scenario.water_sections` holds the ways to state one."""
 
-    type: Literal["clear", "coastal", "harbor"]
-    absorption_per_m: NotNegative | None = None
-    scattering_per_m: NotNegative | None = None
+    type: str
     refractive_index: Annotated[float, Field(ge=1.0, le=2.0)] = 1.3415
     group_index: Annotated[float, Field(ge=1.0, le=2.0)] = 1.36
 
@@ -108,35 +111,45 @@ class Surface(Section):
     water_level_m: float
     wind_speed_m_s: Annotated[float, Field(ge=0.0, le=20.0)] = 5.0
     wind_from_deg: Bearing = 0.0
-    slope_correlation_length_m: Positive = 0.1
 
 
 class Sun(Section):
-    """Background light: by the sun's place and the air, or a stated radiance instead."""
+    """Background light: by the sun's place and the air, or a stated radiance instead.
+
+    Keys without a value follow from the words beside them, see `survey.scenario.sun`.
+    """
 
     day: bool = True
+    model: Literal["low_flight", "high_flight", "layered"] = "low_flight"
     zenith_deg: Annotated[float, Field(ge=0.0, lt=90.0)] = 20.0
+    azimuth_deg: Bearing = 180.0
     optical_thickness: NotNegative = 0.3
-    solar_irradiance_w_m2_nm: NotNegative = 1.95
+    air_extinction_per_m: NotNegative | None = None
     legendre_moment: Annotated[float, Field(ge=-3.0, le=3.0)] = 1.5
-    water_reflectance: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0097
+    spectrum: Literal["stated", "astm_g173"] = "stated"
+    solar_irradiance_w_m2_nm: NotNegative | None = None
+    glint: Literal["paper", "cox_munk"] = "paper"
+    water_light: Literal["stated", "by_water_type"] = "stated"
+    water_reflectance: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
     radiance_w_m2_um_sr: NotNegative | None = None
 
 
 class Transport(Section):
-    """How many walks the Monte Carlo takes and where it joins them."""
+    """How many light paths the Monte Carlo makes and where it splits them."""
 
-    forward_walks_per_m2: Positive = 16.0
-    backward_walks_per_pixel: Count = 64
+    walks_per_pixel: Annotated[int, Field(ge=3)] = 64
     replicates: Annotated[int, Field(ge=3)] = 8
-    split_angle_deg: Annotated[float, Field(gt=0.0, lt=90.0)] = 30.0
-    patch_size_m: Positive = 2.0
-    layer_thickness_m: Positive = 0.5
-    cell_size_m: Positive = 2.0
+    tracks_per_replicate: Annotated[int, Field(ge=16)] = 512
+    split_angle_deg: Annotated[float, Field(gt=0.0, lt=90.0)] = 45.0
+    column_spacing: Positive = 1.0
 
 
 class Processing(Section):
-    """From counts to points and grids; without `echo_gate_ns` an echo is one pulse width long."""
+    """From counts to points and grids; without `echo_gate_ns` an echo is one pulse width long.
+
+    `keep_waveforms` keeps the detector's histograms and time tags in the frames' files: of one
+    pixel in 8 x 8, or of all.
+    """
 
     false_alarm_rate: Annotated[float, Field(gt=0.0, lt=1.0)] = 1e-3
     echo_gate_ns: Positive | None = None

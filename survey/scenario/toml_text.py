@@ -11,6 +11,8 @@ from typing import Any
 def to_toml(tables: Mapping[str, Any]) -> str:
     """Return TOML that reads back as the same tables; keys without a value are left out.
 
+    A table within a section stands in one line.
+
     Examples
     --------
     >>> print(to_toml({"water": {"type": "clear", "absorption_per_m": None, "n": 1.0}}))
@@ -45,6 +47,9 @@ def _value(value: Any) -> str:
         return value.isoformat().replace("+00:00", "Z")
     if isinstance(value, list):
         return f"[{', '.join(_value(entry) for entry in value)}]"
+    if isinstance(value, Mapping):
+        pairs = (f"{k} = {_value(v)}" for k, v in value.items() if v is not None)
+        return f"{{{', '.join(pairs)}}}"
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     return repr(value)

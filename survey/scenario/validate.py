@@ -3,23 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, get_args
+from typing import Any
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic_core import ErrorDetails
 
-from survey.scenario import sections
-from survey.scenario.faults import Fault, did_you_mean, nearest, shown, shown_key
-from survey.scenario.seabed_sections import Seabed, SeabedObject
+from survey.scenario import motion_sections, sections
+from survey.scenario.addresses import Way, all_models, follow, models_in, words_of
+from survey.scenario.detector_sections import AnyDetector
+from survey.scenario.faults import (
+    Fault,
+    ScenarioError,
+    did_you_mean,
+    nearest,
+    shown,
+    shown_key,
+)
+from survey.scenario.flight_sections import AnyFlight
+from survey.scenario.seabed_sections import Seabed
+from survey.scenario.water_sections import WAYS_TO_STATE_A_WATER, AnyWater
 
 SECTIONS: dict[str, Any] = {
     "mission": sections.Mission,
-    "flight": sections.Flight,
+    "flight": AnyFlight,
+    "motion": motion_sections.Motion,
+    "navigation": motion_sections.Navigation,
     "laser": sections.Laser,
     "camera": sections.Camera,
     "receiver": sections.Receiver,
-    "detector": sections.Detector,
-    "water": sections.Water,
+    "detector": AnyDetector,
+    "water": AnyWater,
     "surface": sections.Surface,
     "seabed": Seabed,
     "sun": sections.Sun,
@@ -27,20 +40,6 @@ SECTIONS: dict[str, Any] = {
     "processing": sections.Processing,
     "run": sections.Run,
 }
-
-
-def kinds(union: Any) -> dict[str, type[BaseModel]]:
-    """Return the models of a discriminated union by the word in their key `kind`."""
-    models = get_args(get_args(union)[0])
-    return {get_args(model.model_fields["kind"].annotation)[0]: model for model in models}
-
-
-SEABEDS, OBJECTS = kinds(Seabed), kinds(SeabedObject)
-ALL_MODELS: list[tuple[str, type[BaseModel]]] = [
-    *(("seabed.objects", model) for model in OBJECTS.values()),
-    *(("seabed", model) for model in SEABEDS.values()),
-    *((name, model) for name, model in SECTIONS.items() if name != "seabed"),
-]
 
 
 def validate(tables: Mapping[str, Any]) -> tuple[dict[str, BaseModel], list[Fault]]:
@@ -51,58 +50,76 @@ def validate(tables: Mapping[str, Any]) -> tuple[dict[str, BaseModel], list[Faul
         for name in tables
         if name not in SECTIONS
     ]
-    for name, model in SECTIONS.items():
+    for name, annotation in SECTIONS.items():
         try:
-            sound[name] = TypeAdapter(model).validate_python(tables.get(name, {}))
-        except ValidationError as error:
-            details = error.errors(include_url=False)
-            faults += [_fault((name, *detail["loc"]), detail) for detail in details]
+            sound[name] = validated(tables.get(name, {}), annotation, place=name)
+        except ScenarioError as error:
+            faults += error.faults
     return sound, faults
 
 
-def _fault(address: tuple[str | int, ...], detail: ErrorDetails) -> Fault:
-    path = _without_kinds(address)
-    place = ".".join(shown_key(step) for step in path)
+def validated(table: Any, annotation: Any, *, place: str) -> Any:
+    """Return the model of a type that a plain table describes.
+
+    Raises
+    ------
+    ScenarioError
+        With every fault of the table, each at its place below ``place``.
+    """
+    try:
+        return TypeAdapter(annotation).validate_python(table)
+    except ValidationError as error:
+        details = error.errors(include_url=False)
+    first = details[0]
+    if first["type"] == "union_tag_invalid" and not first["loc"] and isinstance(table, Mapping):
+        details += _faults_besides_the_kind(table, annotation, first["ctx"])
+    ways = [follow((place, *detail["loc"]), {place: annotation}) for detail in details]
+    raise ScenarioError(place, map(_fault, ways, details))
+
+
+def _faults_besides_the_kind(
+    table: Mapping[str, Any], annotation: Any, context: Mapping[str, Any]
+) -> list[ErrorDetails]:
+    """Return what else is wrong with a table of an unknown kind: as the kind with most its keys."""
+    key = context["discriminator"].strip("'")
+    likeliest = max(models_in(annotation), key=lambda model: len(model.model_fields.keys() & table))
+    try:
+        TypeAdapter(annotation).validate_python({**table, key: words_of(likeliest, key)[0]})
+    except ValidationError as error:
+        details = error.errors(include_url=False)
+        return [detail for detail in details if detail["type"] != "missing"]
+    return []
+
+
+def _fault(way: Way, detail: ErrorDetails) -> Fault:
+    place = ".".join(shown_key(step) for step in way.shown)
     if detail["type"].startswith("union_tag"):
-        place += ".kind"
-    return Fault(place, _text(address, detail))
+        place += "." + detail["ctx"]["discriminator"].strip("'")
+    return Fault(place, _text(way, detail))
 
 
-def _without_kinds(address: tuple[str | int, ...]) -> tuple[str | int, ...]:
-    """Leave out the words that say which kind of seabed or object was tried."""
-    return tuple(
-        step
-        for index, step in enumerate(address)
-        if not (_is_seabed(address[:index]) or _is_object(address[:index]))
-    )
+def _unknown_key(way: Way) -> str:
+    assert way.model is not None
+    key = str(way.shown[-1])
+    near = did_you_mean(key, way.model.model_fields)
+    return f"unknown key.{_other_kind(key, way) or near or _other_home(key)}"
 
 
-def _is_seabed(address: tuple[str | int, ...]) -> bool:
-    return address == ("seabed",)
-
-
-def _is_object(address: tuple[str | int, ...]) -> bool:
-    return len(address) == 4 and address[2] == "objects"
-
-
-def _model_at(address: tuple[str | int, ...]) -> type[BaseModel]:
-    """Return the model whose keys stand beside the last step of an address."""
-    if address[0] != "seabed":
-        return SECTIONS[str(address[0])]  # type: ignore[no-any-return]
-    if len(address) > 4:
-        return OBJECTS[str(address[4])]
-    return SEABEDS[str(address[1])]
-
-
-def _unknown_key(address: tuple[str | int, ...]) -> str:
-    key = str(address[-1])
-    near = did_you_mean(key, _model_at(address).model_fields)
-    return f"unknown key.{near or _other_home(key)}"
+def _other_kind(key: str, way: Way) -> str:
+    """Return which other kinds of the same table have the key, or nothing."""
+    for name in ("kind", "type"):
+        words = [
+            word for model in way.choices if key in model.model_fields
+            for word in words_of(model, name)
+        ]  # fmt: skip
+        if words:
+            return f" It goes with {name} = {' or '.join(words)}."
+    return ""
 
 
 def _other_home(key: str) -> str:
     """Return the nearest key of another section and that section's name, or nothing."""
-    homes = {known: name for name, model in ALL_MODELS for known in model.model_fields}
+    homes = {known: place for place, model in all_models(SECTIONS) for known in model.model_fields}
     if key in homes:
         return f" It belongs in [{homes[key]}]."
     near = nearest(key, homes, likeness=0.8)
@@ -111,6 +128,8 @@ def _other_home(key: str) -> str:
 
 def _wrong_kind(detail: ErrorDetails) -> str:
     if detail["type"] == "union_tag_not_found":
+        if detail["ctx"]["discriminator"] == "'type'":
+            return f"missing. {WAYS_TO_STATE_A_WATER}"
         return "missing. Say which kind it is."
     return _not_one_of(detail["ctx"]["tag"], detail["ctx"]["expected_tags"])
 
@@ -120,10 +139,10 @@ def _not_one_of(given: object, expected: str) -> str:
     return f"{shown(given)} is not one of {', '.join(words)}.{did_you_mean(str(given), words)}"
 
 
-def _text(address: tuple[str | int, ...], detail: ErrorDetails) -> str:
+def _text(way: Way, detail: ErrorDetails) -> str:
     kind, given = detail["type"], detail["input"]
     if kind == "extra_forbidden":
-        return _unknown_key(address)
+        return _unknown_key(way)
     if kind.startswith("union_tag"):
         return _wrong_kind(detail)
     if kind == "literal_error":

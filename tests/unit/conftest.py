@@ -218,9 +218,7 @@ def make_look(
         reflectance=0.1,
     )
     bed = slope(ground=ground, depth=depth, gradient=gradient) if seabed is None else seabed
-    surface = SeaSurface.from_wind(
-        level=level, wind_speed=5.0, wind_from=0.0, correlation_length=0.1
-    )
+    surface = SeaSurface.from_wind(level=level, wind_speed=5.0, wind_from=0.0)
     water = petzold_water("coastal", refractive_index=1.3415, group_index=1.36)
     rays = pixel_rays(camera=camera, pose=pose)
     return Look(

@@ -24,6 +24,7 @@ from survey.products.writing import ProductError
 from survey.scenario.load import load_scenario
 from survey.scenario.scenario import Scenario
 from survey.scenario.toml_text import to_toml
+from survey.sensor.detector import Readings
 
 PRODUCTS = {
     *("scenario.toml", "manifest.json", "journal.jsonl", "trajectory.csv", "bottom.laz"),
@@ -39,7 +40,7 @@ def small(tables: dict[str, Any], tmp_path: Path) -> Scenario:
     """Three frames of 16 x 8 pixels with few walks, over a slope from 3 m."""
     tables["flight"] |= {"frames_per_line": 3, "speed_m_s": 20.0}
     tables["camera"] = {"rows": 8, "columns": 16}
-    tables["transport"] = {"forward_walks_per_m2": 8.0, "backward_walks_per_pixel": 32}
+    tables["transport"] = {"walks_per_pixel": 32}
     tables["seabed"] = {"kind": "slope", "depth_m": 3.0, "slope_deg": 3.0, "downhill_deg": 90.0}
     return Scenario.from_tables(tables, name="reef.toml", folder=tmp_path)
 
@@ -168,12 +169,11 @@ class Dice:
     def __init__(self) -> None:
         self.rolls: list[int] = []
 
-    def count(self, expected: NDArray[np.float64], chance: np.random.Generator) -> Any:
+    def read(self, light: NDArray[np.float64], chance: np.random.Generator) -> Readings:
         self.rolls.append(int(chance.integers(1 << 62)))
-        return np.round(expected).astype(np.int32)
-
-    def saturated(self, counts: NDArray[np.int32]) -> Any:
-        return np.zeros(counts.shape[:-1], np.bool_)
+        return Readings(
+            counts=np.round(light).astype(np.int32), blind=np.zeros(light.shape, np.bool_)
+        )
 
 
 def test_every_frame_draws_its_own_counts_and_always_the_same(small: Scenario) -> None:

@@ -13,6 +13,7 @@ from survey.cloud.points import Outcome, PointClass
 from survey.products.accuracy import metrics
 from survey.products.coverage import surveyed_hull
 from survey.products.pixels import explain_empty, pixel_metrics
+from survey.products.reach import WaterClarity, reach_sentence
 
 
 def judged(survey: Any, *, cell_size: float = 8.0) -> dict[str, Any]:
@@ -25,6 +26,7 @@ def judged(survey: Any, *, cell_size: float = 8.0) -> dict[str, Any]:
         water_level=survey.water_level,
         survey_area=surveyed_hull(survey.records),
         cell_size=cell_size,
+        clarity=WaterClarity(attenuation=0.4, diffuse_attenuation=0.2),
     )
 
 
@@ -128,6 +130,34 @@ def test_detection_depth(small_survey: Any) -> None:
     assert values["detection_depth_m"] == 7.0
     assert values["found_fraction_where_detectable"] == 1.0
     assert values["found_fraction_above_detection_depth"] == 1.0
+
+
+def test_how_deep_the_bottom_was_found(small_survey: Any) -> None:
+    """19 pixels in 20 down to 7 m, 13 down to 8 m, 7 below."""
+    records = []
+    for record in small_survey.records:
+        depth = record.true_depth
+        found = np.select([depth < 7.0, depth < 8.0], [19, 13], 7)
+        missed = np.arange(depth.size).reshape(depth.shape) % 20 >= found
+        outcome = np.where(missed, Outcome.TOO_WEAK, Outcome.FOUND).astype(np.uint8)
+        records.append(replace(record, outcome=outcome))
+    values = judged(replace(small_survey, records=records))
+    assert values["found_depth_m"] == values["detection_depth_m"] == 7.0
+    assert values["half_found_depth_m"] == 8.0
+    assert values["found_depth_c_z"] == values["detection_depth_c_z"] == 2.8
+    assert values["half_found_depth_k_d_z"] == 1.6
+    assert "found the bottom down to 7.0 m (c z 2.8, K_d z 1.4)" in reach_sentence(values)
+
+
+def test_no_depth_where_nothing_was_found(small_survey: Any) -> None:
+    records = [
+        replace(record, outcome=np.full_like(record.outcome, Outcome.FALSE_BOTTOM))
+        for record in small_survey.records
+    ]
+    values = judged(replace(small_survey, records=records))
+    assert values["found_depth_m"] is values["half_found_depth_c_z"] is None
+    assert values["detection_depth_k_d_z"] == 1.4
+    assert "found the bottom at no depth and one in two at no depth" in reach_sentence(values)
 
 
 def test_a_miss_in_shallow_water_is_counted(small_survey: Any) -> None:

@@ -75,7 +75,7 @@ def test_the_flight_lies_in_the_local_frame(scenario: Scenario) -> None:
 def test_transport_takes_the_illumination_from_the_laser(scenario: Scenario) -> None:
     settings = components.transport_settings(scenario.replace(**{"laser.illumination": "isolated"}))
     assert settings.illumination == "isolated"
-    assert settings.split_angle == pytest.approx(np.pi / 6)
+    assert settings.split_angle == pytest.approx(np.pi / 4)
 
 
 def test_a_stated_radiance_comes_before_sun_and_night(scenario: Scenario) -> None:

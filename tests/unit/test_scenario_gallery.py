@@ -9,10 +9,13 @@ import pytest
 from numpy.typing import NDArray
 
 from survey.flight.trajectory import fly_lines, footprint
+from survey.optics.water import PAPER_COEFFICIENTS
 from survey.scenario import Scenario, ScenarioError, components, load_scenario
 from survey.scenario.gallery import gallery
+from survey.scenario.load import parse_overrides
 
 ROOT = Path(__file__).parents[2]
+PAPER = {"paper-p02": "clear", "paper-p05": "coastal", "paper-p07": "harbor"}
 
 
 def outlines_on_map(scenario: Scenario) -> list[NDArray[np.float64]]:
@@ -42,7 +45,7 @@ def test_every_scenario_is_sound_and_says_what_to_expect(name: str) -> None:
 
 def test_the_gallery_is_complete() -> None:
     names = {"measured-seabed", "sandbar", "wreck", "turned-footprint", "too-deep"}
-    assert names <= gallery().keys()
+    assert names | PAPER.keys() <= gallery().keys()
 
 
 def test_measured_seabed_is_flown_over_valid_cells_with_a_margin() -> None:
@@ -91,6 +94,41 @@ def test_wreck_lies_under_the_flight() -> None:
     seen = np.array(outlines_on_map(scenario)).reshape(-1, 2)
     assert (seen.min(axis=0) < place - 20.0).all()
     assert (seen.max(axis=0) > place + 20.0).all()
+
+
+@pytest.mark.parametrize(("name", "water"), PAPER.items())
+def test_the_paper_s_mission_by_day_and_night_down_a_slope_and_flat(name: str, water: str) -> None:
+    by_day = load_scenario(name)
+    assert "impossible as hardware" in by_day.mission.description
+    assert components.camera(by_day).half_tangents == (0.256, 0.128)
+    medium = components.water(by_day)
+    assert (medium.absorption, medium.scattering) == PAPER_COEFFICIENTS[water]
+    assert components.background_radiance(by_day) == pytest.approx(51.8e6, rel=1e-3)
+    by_night = by_day.replace(**parse_overrides(["sun.day=false"]))
+    assert components.background_radiance(by_night) == pytest.approx(1e3)
+    flat = parse_overrides(['seabed={kind="plane", depth_m=50, reflectance=0.1}'])
+    assert flat["seabed"]["kind"] in by_day.mission.expect
+    for scenario in (by_day, by_night.replace(**flat)):
+        assert gate_end(scenario) > corner_echo(scenario, deepest(scenario)) + 10e-9
+
+
+def deepest(scenario: Scenario) -> float:
+    """Return the greatest depth that the frames see straight below their edges [m]."""
+    corners = np.concatenate(outlines_on_map(scenario)) - components.map_frame(scenario).origin[:2]
+    return float(-components.seabed(scenario).elevation_at(corners[:, 0], corners[:, 1]).min())
+
+
+def gate_end(scenario: Scenario) -> float:
+    receiver = components.receiver(scenario)
+    return receiver.gate_start + receiver.bins * receiver.bin_width
+
+
+def corner_echo(scenario: Scenario, depth: float) -> float:
+    """Return the two-way time to a bottom that deep, seen by a corner pixel [s]."""
+    slant = np.arctan(np.hypot(0.256, 0.128))
+    refracted = np.arcsin(np.sin(slant) / 1.33)
+    way = scenario.flight.height_m / np.cos(slant) + 1.33 * depth / np.cos(refracted)
+    return float(2.0 * way / 299_792_458.0)
 
 
 def test_the_readme_s_scenario_only_lacks_its_raster(tmp_path: Path) -> None:

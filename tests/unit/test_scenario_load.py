@@ -150,7 +150,15 @@ def test_settings_are_toml_values_or_bare_words() -> None:
     }
 
 
-@pytest.mark.parametrize("setting", ["water.type", "water=3", "=3", ""])
+def test_a_setting_may_be_a_whole_section() -> None:
+    flat = parse_overrides(['seabed={kind="plane", depth_m=50}'])
+    assert flat == {"seabed": {"kind": "plane", "depth_m": 50}}
+    assert load_scenario("sandbar", flat).seabed.kind == "plane"
+
+
+@pytest.mark.parametrize(
+    "setting", ["water.type", "water=3", "=3", "", "seabed={kind=plane}", "={a=1}"]
+)
 def test_settings_without_place_or_value_are_refused(setting: str) -> None:
     with pytest.raises(ScenarioError, match=r"Write section\.key=value"):
         parse_overrides([setting])

@@ -1,0 +1,123 @@
+"""Polygons on the map: faults, clipping, area."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+FEWEST_CORNERS, MOST_CORNERS = 3, 2000
+SHOWN = 5
+SMALLEST_AREA = 1.0
+
+
+def polygon_faults(corners: FloatArray) -> list[str]:
+    """Return what is wrong with a polygon, one line a fault; nothing where it is sound.
+
+    Parameters
+    ----------
+    corners : array (n, 2)
+        Easting and northing [m]; the last corner joins the first without being repeated.
+
+    Examples
+    --------
+    >>> polygon_faults(np.array([[0.0, 0.0], [90.0, 90.0], [90.0, 0.0], [0.0, 90.0]]))
+    ['side 0-1 crosses side 2-3 near easting 45.0, northing 45.0. Put the corners in order']
+    """
+    count = len(corners)
+    if not FEWEST_CORNERS <= count <= MOST_CORNERS:
+        return [f"{count} corners. Give {FEWEST_CORNERS} to {MOST_CORNERS}"]
+    bad = np.flatnonzero(~np.isfinite(corners).all(axis=1))
+    if bad.size:
+        return [f"corner {number} is not a finite place" for number in bad[:SHOWN]]
+    same = np.flatnonzero((corners == np.roll(corners, -1, axis=0)).all(axis=1))
+    if same.size:
+        return [f"corner {i} is repeated. Leave it out" for i in (same[:SHOWN] + 1) % count]
+    crossings = _crossings(corners)
+    if crossings:
+        return crossings
+    if abs(signed_area(corners)) < SMALLEST_AREA:
+        return [f"an area of less than {SMALLEST_AREA:g} m2. Are the corners on one line?"]
+    return []
+
+
+def _crossings(corners: FloatArray) -> list[str]:
+    """Return the pairs of sides that meet elsewhere than in a corner that they share."""
+    low = corners.min(axis=0)
+    a = corners - low
+    b = np.roll(a, -1, axis=0)
+    count = len(a)
+    first, second = np.triu_indices(count, 2)
+    neighbours = (first == 0) & (second == count - 1)
+    first, second = first[~neighbours], second[~neighbours]
+    sides = (
+        _side(a[first], b[first], a[second]) * _side(a[first], b[first], b[second]),
+        _side(a[second], b[second], a[first]) * _side(a[second], b[second], b[first]),
+    )
+    boxes = (np.minimum(a, b), np.maximum(a, b))
+    apart = (boxes[1][first] < boxes[0][second]) | (boxes[1][second] < boxes[0][first])
+    cross = (sides[0] <= 0.0) & (sides[1] <= 0.0) & ~apart.any(axis=1)
+    return [
+        _crossing(i, j, a, b, low)
+        for i, j in zip(first[cross][:SHOWN], second[cross][:SHOWN], strict=True)
+    ]
+
+
+def _crossing(i: int, j: int, a: FloatArray, b: FloatArray, low: FloatArray) -> str:
+    count = len(a)
+    along, other = b[i] - a[i], b[j] - a[j]
+    across = along[0] * other[1] - along[1] * other[0]
+    way = a[j] - a[i]
+    part = (way[0] * other[1] - way[1] * other[0]) / across if across else 0.5
+    east, north = a[i] + np.clip(part, 0.0, 1.0) * along + low
+    return (
+        f"side {i}-{(i + 1) % count} crosses side {j}-{(j + 1) % count} near easting {east:.1f}, "
+        f"northing {north:.1f}. Put the corners in order"
+    )
+
+
+def _side(start: FloatArray, end: FloatArray, place: FloatArray) -> FloatArray:
+    """Return on which side of directed lines places lie: positive on the left."""
+    along, way = end - start, place - start
+    return np.asarray(np.sign(along[:, 0] * way[:, 1] - along[:, 1] * way[:, 0]))
+
+
+def signed_area(corners: FloatArray) -> float:
+    """Return the area of a polygon (n, 2) [m2], negative where it runs clockwise.
+
+    Examples
+    --------
+    >>> signed_area(np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0]]))
+    6.0
+    """
+    if len(corners) < FEWEST_CORNERS:
+        return 0.0
+    x, y = (corners - corners[0]).T
+    return float(0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
+
+
+def clipped(corners: FloatArray, *, low: FloatArray, high: FloatArray) -> FloatArray:
+    """Return the part of a polygon (n, 2) inside a box with its sides along the axes.
+
+    Sutherland and Hodgman (1974): of a concave polygon several parts may come joined by lines
+    without area along the box's sides, so extent and area are right.
+    """
+    for axis in (0, 1):
+        corners = _cut(corners, axis, low[axis], 1.0)
+        corners = _cut(corners, axis, high[axis], -1.0)
+    return corners
+
+
+def _cut(corners: FloatArray, axis: int, limit: float, sense: float) -> FloatArray:
+    """Return the part of a polygon on one side of a limit: above it where sense is 1."""
+    if len(corners) == 0 or np.isinf(limit):
+        return corners
+    depth = sense * (corners[:, axis] - limit)
+    following, next_depth = np.roll(corners, -1, axis=0), np.roll(depth, -1)
+    inside = depth >= 0.0
+    crossing = inside != (next_depth >= 0.0)
+    span = np.where(crossing, depth - next_depth, 1.0)
+    meets = corners + (depth / span)[:, None] * (following - corners)
+    both = np.stack([corners, meets], axis=1).reshape(-1, 2)
+    return np.asarray(both[np.stack([inside, crossing], axis=1).ravel()])

@@ -1,0 +1,1 @@
+"""What a flight will come to, before any light is traced: `bathyflash plan`."""

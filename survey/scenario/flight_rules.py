@@ -1,0 +1,157 @@
+"""Rules that bind the keys of a flight together, to its files, and to the receiver's gate."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from survey.scenario import flight_sections as kinds
+from survey.scenario.faults import Fault
+from survey.scenario.flight_parts import (
+    FORMAT_OF_SUFFIX,
+    area_corners,
+    legs,
+    read_track,
+    sound_area_m2,
+    sound_track,
+    track_format,
+)
+from survey.scenario.motion_sections import Motion
+from survey.scenario.sections import Camera, Flight, Mission
+
+FloatArray = NDArray[np.float64]
+
+LARGEST_FRAME_COUNT = 1_000_000
+WIDEST_SWING = 4.0  # of the r.m.s.: one flash in 16,000 goes beyond
+
+
+def files_can_be_flown(flight: Flight, mission: Mission, folder: Path) -> Iterator[Fault]:
+    """Areas and trajectories can be read, lie on the map, and are sound."""
+    file = getattr(flight, "file", None)
+    if isinstance(flight, kinds.AreaFlight) and (file is None) == (flight.corners_m is None):
+        yield Fault("flight.corners_m", "give an area its corners_m or a file, one of them.")
+    elif file is not None and not (folder / file).is_file():
+        yield Fault("flight.file", f"no file '{file}' in {folder}.", missing_file=True)
+    elif isinstance(flight, kinds.AreaFlight):
+        yield from _area_faults(flight, mission.crs_epsg, folder)
+    elif isinstance(flight, kinds.RecordedFlight):
+        yield from _track_faults(flight, mission.crs_epsg, folder)
+
+
+def _area_faults(flight: kinds.AreaFlight, epsg: int, folder: Path) -> Iterator[Fault]:
+    from pyproj.exceptions import CRSError
+
+    from survey.flight.files.faults import FlightFileError
+    from survey.flight.polygon import polygon_faults
+
+    place = "flight.corners_m" if flight.file is None else "flight.file"
+    name = "" if flight.file is None else f"{flight.file}: "
+    try:
+        corners = area_corners(flight, epsg=epsg, folder=folder)
+    except FlightFileError as error:
+        yield from (Fault(place, f"{name}{text}.") for text in error.faults)
+    except CRSError:
+        return  # said of mission.crs_epsg
+    else:
+        yield from (Fault(place, f"{name}{text}.") for text in polygon_faults(corners))
+
+
+def _track_faults(flight: kinds.RecordedFlight, epsg: int, folder: Path) -> Iterator[Fault]:
+    from pyproj.exceptions import CRSError
+
+    from survey.flight.files.faults import FlightFileError
+
+    if track_format(flight) is None:
+        known = ", ".join(FORMAT_OF_SUFFIX)
+        yield Fault("flight.format", f"the file's name ends in none of {known}. Say the format.")
+        return
+    try:
+        track = read_track(flight, epsg=epsg, folder=folder)
+    except FlightFileError as error:
+        yield from (Fault("flight.file", f"{flight.file}: {text}.") for text in error.faults)
+        return
+    except CRSError:
+        return  # said of mission.crs_epsg
+    if not np.isfinite(track.position).all():
+        yield Fault("flight.file", f"{flight.file}: places lie outside the map EPSG:{epsg}.")
+    yield from _leg_faults(flight, float(track.time[-1] - track.time[0]))
+
+
+def _leg_faults(flight: kinds.RecordedFlight, duration: float) -> Iterator[Fault]:
+    after = 0.0
+    for number, (begin, end) in enumerate(flight.legs_s):
+        place = f"flight.legs_s.{number}"
+        if not after <= begin <= end:
+            yield Fault(place, f"[{begin:g}, {end:g}] does not follow {after:g} s. Sort the legs.")
+        elif end > duration:
+            yield Fault(place, f"{end:g} s is beyond the file's last record at {duration:g} s.")
+        after = end
+
+
+def profiles_ascend(flight: Flight) -> Iterator[Fault]:
+    """The places of a profile follow each other along the heading."""
+    for name in ("height_profile", "speed_profile"):
+        steps = getattr(flight, name, [])
+        for number, (one, other) in enumerate(pairwise(steps), start=1):
+            if other.distance_m <= one.distance_m:
+                yield Fault(
+                    f"flight.{name}.{number}.distance_m",
+                    f"{other.distance_m:g} is not beyond {one.distance_m:g} before it. Sort them.",
+                )
+
+
+def wind_is_slower_than_the_aircraft(flight: Flight) -> Iterator[Fault]:
+    """An aircraft that keeps to its line makes headway against the wind."""
+    if not isinstance(flight, kinds.PlannedFlight):
+        return
+    speed = min([step.speed_m_s for step in flight.speed_profile] or [flight.speed_m_s])
+    if flight.wind_speed_m_s >= speed:
+        yield Fault(
+            "flight.wind_speed_m_s",
+            f"{flight.wind_speed_m_s:g} is not below the ground speed of {speed:g}. Lower it.",
+        )
+
+
+def recorded_motion_is_in_the_file(flight: Flight, motion: Motion) -> Iterator[Fault]:
+    """A recorded flight moves as its file says."""
+    if isinstance(flight, kinds.RecordedFlight) and motion != Motion(source=motion.source):
+        yield Fault("motion", "the trajectory's file has the motion. Leave this section out.")
+
+
+def mission_is_finite(
+    flight: Flight, camera: Camera, mission: Mission, folder: Path
+) -> Iterator[Fault]:
+    """A mission has no more frames than file names have digits."""
+    count, place = _frame_count(flight, camera, mission, folder)
+    if count > LARGEST_FRAME_COUNT:
+        yield Fault(place, f"{count} frames in all. Stay below {LARGEST_FRAME_COUNT}.")
+
+
+def _frame_count(flight: Flight, camera: Camera, mission: Mission, folder: Path) -> tuple[int, str]:
+    """Return how many frames a flight has, estimated for an area, and the key to blame."""
+    if isinstance(flight, kinds.LinesFlight):
+        return flight.lines * flight.frames_per_line, "flight.frames_per_line"
+    if isinstance(flight, kinds.RecordedFlight):
+        track = sound_track(flight, epsg=mission.crs_epsg, folder=folder)
+        flown = [] if track is None else legs(flight, track)
+        seconds = sum(end - begin for begin, end in flown)
+        return int(seconds * flight.flash_rate_hz), "flight.flash_rate_hz"
+    assert isinstance(flight, kinds.AreaFlight)
+    tangent = camera.pixel_footprint_m / camera.design_range_m
+    side = camera.rows if camera.long_side == "along" else camera.columns
+    spacing = side * tangent * flight.heights_m[0] * (1.0 - flight.sidelap)
+    area = sound_area_m2(flight, epsg=mission.crs_epsg, folder=folder)
+    return int(area / spacing * flight.flash_rate_hz / flight.speed_m_s), "flight.flash_rate_hz"
+
+
+FLIGHT_RULES: tuple[Callable[..., Iterator[Fault]], ...] = (
+    files_can_be_flown,
+    profiles_ascend,
+    wind_is_slower_than_the_aircraft,
+    recorded_motion_is_in_the_file,
+    mission_is_finite,
+)

@@ -1,0 +1,115 @@
+"""The section [flight]: one set of keys for each kind of flight."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import PurePath
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field
+
+from survey.scenario.sections import Bearing, Count, Flight, NotNegative, Positive, Section, Text
+
+Overlap = Annotated[float, Field(ge=0.0, lt=1.0)]
+Bank = Annotated[float, Field(gt=0.0, le=60.0)]
+Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
+AREA_SUFFIXES = (".geojson", ".json")
+TrackFormat = Literal["csv", "cblue", "sbet"]
+
+
+class HeightAt(Section):
+    """The height above the water at a place along the heading; straight in between."""
+
+    distance_m: float
+    height_m: Positive
+
+
+class SpeedAt(Section):
+    """The ground speed at a place along the heading; straight in between."""
+
+    distance_m: float
+    speed_m_s: Positive
+
+
+class PlannedFlight(Flight):
+    """Straight lines; sidelap counts at the water surface.
+
+    Profiles replace `height_m` and `speed_m_s`; their distances count along the heading from
+    where the lines begin. With `turn_bank_deg` a turn takes as long as its way, without it
+    `turn_time_s`. Wind turns the nose off the line (crab angle); `speed_m_s` is that over ground.
+    """
+
+    heading_deg: Bearing
+    sidelap: Overlap = 0.2
+    turn: Literal["alternate", "same"] = "alternate"
+    turn_time_s: NotNegative = 60.0
+    turn_bank_deg: Bank | None = None
+    height_profile: list[HeightAt] = Field(default_factory=list)
+    speed_profile: list[SpeedAt] = Field(default_factory=list)
+    wind_speed_m_s: Annotated[float, Field(ge=0.0, le=60.0)] = 0.0
+    wind_from_deg: Bearing = 0.0
+
+    @property
+    def heights_m(self) -> tuple[float, float]:
+        """Least and greatest height above the water."""
+        heights = [step.height_m for step in self.height_profile] or [self.height_m]
+        return min(heights), max(heights)
+
+
+class LinesFlight(PlannedFlight):
+    """So many parallel lines, each so many flashes long, from a start on the map."""
+
+    kind: Literal["lines"] = "lines"
+    start_easting_m: float
+    start_northing_m: float
+    frames_per_line: Count
+    lines: Count = 1
+
+
+class AreaFlight(PlannedFlight):
+    """As many lines as cover a polygon, its corners on the map or in a GeoJSON file.
+
+    Cross lines run a quarter turn to the right of the heading.
+    """
+
+    kind: Literal["area"]
+    corners_m: list[Pair] | None = None
+    file: Text | None = None
+    cross_lines: Annotated[int, Field(ge=0, le=1000)] = 0
+
+
+class RecordedFlight(Flight):
+    """Along a recorded trajectory, moving as the aircraft did; each leg is a line.
+
+    The format follows from the file's name (.csv, .txt for cBLUE's, .out or .sbet) unless told.
+    Offsets are added to every place: `offset_up_m` brings heights into the vertical datum.
+    `height_m` and `speed_m_s` say what the receiver's gate and the rules count on.
+    """
+
+    kind: Literal["trajectory"]
+    file: Text
+    format: TrackFormat | None = None
+    column_prefix: Literal["", "true_", "measured_"] = ""
+    legs_s: list[Pair] = Field(default_factory=list)
+    offset_easting_m: float = 0.0
+    offset_northing_m: float = 0.0
+    offset_up_m: float = 0.0
+
+
+def _with_kind(given: Any) -> Any:
+    """Where the kind is not said, the keys tell it."""
+    if not isinstance(given, Mapping) or "kind" in given:
+        return given
+    if "corners_m" in given:
+        return {"kind": "area", **given}
+    if isinstance(given.get("file"), str):
+        is_area = PurePath(given["file"]).suffix.lower() in AREA_SUFFIXES
+        return {"kind": "area" if is_area else "trajectory", **given}
+    return {"kind": "lines", **given}
+
+
+AnyFlight = Annotated[
+    LinesFlight | AreaFlight | RecordedFlight,
+    Field(discriminator="kind"),
+    BeforeValidator(_with_kind),
+]

@@ -1,0 +1,81 @@
+"""The light and the depth limits of a plan against the engine and the runs that they foretell."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from survey.mission import fly_frame
+from survey.planning.expectation import expected_light
+from survey.planning.plan import make_plan
+from survey.planning.response_table import Illumination, response_table
+from survey.preparation import prepare
+from survey.products.pixels import pixel_metrics
+from survey.scenario.scenario import Scenario
+from survey.transport.response import response
+
+COARSE = {"rows": 8, "columns": 16, "pixel_footprint_m": 8.0}
+"""The paper's field of view in 128 pixels: as much light in all, in little time."""
+
+
+def scenario(water: str, seabed: dict[str, Any], **changes: Any) -> Scenario:
+    tables: dict[str, Any] = {
+        "mission": {"title": "a test"},
+        "flight": {
+            "start_easting_m": 500250.0,
+            "start_northing_m": 6000750.0,
+            "heading_deg": 90.0,
+            "frames_per_line": 1,
+        },
+        "camera": COARSE,
+        "receiver": {"aperture_radius_m": 0.00125, "filter_width_nm": 1.0, "bins": 500},
+        "detector": {"quantum_efficiency": 0.2, "dark_count_rate_hz": 1.0e4},
+        "water": {"type": water},
+        "surface": {"water_level_m": 0.0},
+        "seabed": seabed,
+    }
+    return Scenario.from_tables(tables, name="test.toml", folder=Path()).replace(**changes)
+
+
+@pytest.mark.parametrize("lit", ["flood", "isolated"])
+def test_shipped_tables_are_what_response_computes(lit: str) -> None:
+    """False alarms 1e-4 (3.9 standard errors of both together); at 10 m they are 0.5 % or less."""
+    which: Illumination = "flood" if lit == "flood" else "isolated"
+    table = response_table("coastal", which)
+    water = prepare(scenario("coastal", {"kind": "plane", "depth_m": 10.0})).engine.water
+    found = response(water=water, illumination=which, bottom_depth=10.0, seed=77).two_way
+    shipped = table.two_way_at(np.array([10.0]))[0]
+    assert abs(found.value - shipped) < 3.9 * np.hypot(found.sem, 0.005 * shipped)
+
+
+@pytest.mark.parametrize(("water", "depth"), [("clear", 15.0), ("coastal", 8.0)])
+def test_expected_light_is_that_of_the_engine(water: str, depth: float) -> None:
+    """Pooled over the inner half of the frame, whose surroundings are lit as far as light goes."""
+    work = {"transport.walks_per_pixel": 256}
+    flown = scenario(water, {"kind": "plane", "depth_m": depth}, **work)
+    mission, light = prepare(flown), expected_light(flown, height=200.0)
+    flash = mission.engine.flash(pose=mission.frames[0].pose, frame=0)
+    foretold = light.bottom(depth=depth, reflectance=0.1)
+    inner = np.s_[2:6, 4:12]
+    traced = flash.origin("bottom")[inner].sum(axis=-1)
+    spread = traced.std(ddof=1) / traced.size**0.5 / traced.mean()
+    assert spread < 0.03
+    assert foretold.sum(axis=-1).mean() / traced.mean() == pytest.approx(1.0, abs=0.06)
+
+
+@pytest.mark.parametrize(("water", "depth"), [("clear", 24.0), ("coastal", 15.0)])
+def test_limits_agree_with_a_run(water: str, depth: float) -> None:
+    """Over a slope through the limit: what a plan says of a run, within 10 %."""
+    steep = {"kind": "slope", "depth_m": depth, "slope_deg": 6.0, "downhill_deg": 90.0}
+    flown = scenario(water, steep)
+    mission = prepare(flown)
+    record = fly_frame(mission, mission.frames[0]).record
+    shown = pixel_metrics([record])["detection_depth_m"]
+    foretold = make_plan(flown).expectation
+    assert shown is not None
+    assert np.nanmin(record.true_depth) + 1.0 < shown < np.nanmax(record.true_depth) - 1.0
+    assert foretold.run_day.depth == pytest.approx(shown, rel=0.1)
+    assert foretold.day.depth == pytest.approx(shown, rel=0.15)
