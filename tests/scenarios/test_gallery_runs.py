@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from survey.cloud.points import PointClass, PointCloud
+from survey.cloud.points import Outcome, PointClass, PointCloud
 from survey.cloud.stitch import stitched
 from survey.mission import fly_frame
 from survey.preparation import Mission, prepare
@@ -114,6 +114,19 @@ def test_wreck_stands_on_its_bed() -> None:
     top = cloud.select(called & on_wreck)
     assert np.median(top.position[:, 2]) > -8.5
     assert np.median(np.abs(top.position[:, 2] - top.truth[:, 2])) < 0.6
+
+
+def test_the_paper_s_mission_finds_the_bottom_of_coastal_water_to_24_m_by_day() -> None:
+    """P05 over 16 to 24 m, and over 38 to 46 m; the column of its waters is weak by then."""
+    mission = prepare(load_scenario("paper-p05").replace(**LESS_WORK))
+    seen, unseen = (fly_frame(mission, mission.frames[number]).record for number in (4, 9))
+    in_reach = seen.true_depth < 23.5
+    assert seen.true_depth.min() < 18.5
+    assert (seen.outcome[in_reach] == Outcome.FOUND).mean() > 0.97
+    assert np.median(seen.detection_probability[in_reach]) > 0.99
+    assert unseen.true_depth.min() > 35.0
+    assert np.median(unseen.detection_probability) < 0.01
+    assert (unseen.outcome == Outcome.FOUND).mean() < 0.01
 
 
 @pytest.mark.slow

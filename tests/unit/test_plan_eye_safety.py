@@ -41,7 +41,7 @@ def test_many_pulses_lower_the_limit_of_each() -> None:
 def test_pulses_within_five_microseconds_count_as_one() -> None:
     train = {"pulse_duration": 1e-9, "flashes": 1, "dwell": 0.1}
     one = pulse_limit(burst=1, burst_rate=1e6, **train)
-    assert pulse_limit(burst=6, burst_rate=1e6, **train) == pytest.approx(one / 6.0)
+    assert pulse_limit(burst=5, burst_rate=1e6, **train) == pytest.approx(one / 5.0)
 
 
 def test_the_train_as_a_whole_has_its_limit() -> None:
