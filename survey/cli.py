@@ -265,8 +265,8 @@ def bench(
             rows.append(row)
             if not as_json:
                 pairs = zip(row["sizes"], row["seconds"], strict=True)
-                shown = "  ".join(f"{size:g}: {seconds:.3f} s" for size, seconds in pairs)
-                typer.echo(f"{row['name']:18}{shown}  exponent {row['exponent']:.2f}")
+                timed = "  ".join(f"{size:g}: {seconds:.3f} s" for size, seconds in pairs)
+                typer.echo(f"{row['name']:18}{timed}  exponent {row['exponent']:.2f}")
         if as_json:
             whole = {"scaling": rows} | benchmark.machine(threads=threads)
             typer.echo(json.dumps(whole, indent=1))
