@@ -85,23 +85,30 @@ def light_sent(
     depth: float,
     east: float,
     north: float,
-) -> tuple[float, float]:
-    """Return what the laser sends along a track to a place [1/m2], and the way in air [m].
+    slope_x: float,
+    slope_y: float,
+) -> tuple[float, float, float]:
+    """Return what the laser sends along a track to a place [1/m2], the way in air, how much deeper.
 
     The track goes (``east``, ``north``) sideways to the place's ``depth``. Where it enters is where
     the flat surface's ray does, but for what it strays from that ray; neighbours part with depth,
-    and what strays does less so at the surface.
+    and what strays does less so at the surface. The ray that enters there leans the other way: it
+    tilts the track, which is then somewhat deeper [m] and, on what goes through the place by
+    (``slope_x``, ``slope_y``) per metre of depth, thinned further. Departure: to first order, and
+    as if neighbours parted alike in all directions.
     """
     spread_r, spread_t = 1.0 + depth * ray.radial, 1.0 + depth * ray.tangential
     thinned = 1.0 / (spread_r * spread_t)
     shrink = math.sqrt(thinned)
     flat_x, flat_y = depth * ray.slope_x, depth * ray.slope_y
-    px = x - flat_x - (east - flat_x) * shrink
-    py = y - flat_y - (north - flat_y) * shrink
+    stray_x, stray_y = east - flat_x, north - flat_y
+    px, py = x - flat_x - stray_x * shrink, y - flat_y - stray_y * shrink
+    lean = 0.5 * (ray.radial + ray.tangential) * shrink
+    thinned /= 1.0 + lean * (stray_x * slope_x + stray_y * slope_y)
     level = scene.sea.level
     light = light_on_water(optics, level, px, py, sight.pixel, method.isolated)
     if light == 0.0:
-        return 0.0, 0.0
+        return 0.0, 0.0, 0.0
     dx, dy, dz = px - optics.position[0], py - optics.position[1], level - optics.position[2]
     in_air = math.sqrt(dx * dx + dy * dy + dz * dz)
     if scene.bounds.highest > level:
@@ -110,8 +117,8 @@ def light_sent(
             dx / in_air, dy / in_air, dz / in_air, in_air,
         )  # fmt: skip
         if face >= 0:
-            return 0.0, 0.0
-    return light * thinned, in_air
+            return 0.0, 0.0, 0.0
+    return light * thinned, in_air, lean * (stray_x * stray_x + stray_y * stray_y)
 
 
 @inlined_kernel
@@ -156,15 +163,15 @@ def add_bottom(
     if facing <= 0.0 or abs(dz) < FLATTEST:
         return
     east, north = leg[0] + dx * along, leg[1] + dy * along
-    light, in_air = light_sent(
+    light, in_air, deeper = light_sent(
         scene, optics, method, sight, ray, place.x, place.y, scene.sea.level - place.z,
-        east, north,
+        east, north, dx / -dz, dy / -dz,
     )  # fmt: skip
     if light == 0.0:
         return
     if not is_open(scene, tally, legs, along, place.x - east, place.y - north):
         return
-    path += along
+    path += along + deeper / dz
     whole = path + place.path
     photons = method.photons * strength * light * facing / abs(dz) * place.gain
     deposit(
@@ -206,7 +213,10 @@ def add_column(
         if cosine >= method.split_cosine:
             continue
         x, y = back[0] + back[3] * to, back[1] + back[4] * to
-        light, in_air = light_sent(scene, optics, method, sight, ray, x, y, depth, east, north)
+        light, in_air, deeper = light_sent(
+            scene, optics, method, sight, ray, x, y, depth, east, north,
+            back[3] / -back[5], back[4] / -back[5],
+        )  # fmt: skip
         if light == 0.0:
             continue
         if scene.sea.level - deepest < scene.bounds.highest and not is_open(
@@ -216,7 +226,7 @@ def add_column(
         at = max(0.0, 0.5 * (cosine + 1.0) * (table.shape[0] - 1))
         entry = min(int(at), table.shape[0] - 2)
         density = table[entry] + (at - entry) * (table[entry + 1] - table[entry])
-        whole = path + along + back[7] + to
+        whole = path + along + back[7] + to - deeper / back[5]
         photons = method.photons * strength * light * sight.importance / abs(back[5])
         photons *= medium.scattering * method.spacing * density
         deposit(
