@@ -48,25 +48,36 @@ class Swing:
         adds meanwhile keeps their stationary variances rms^2 and (w rms)^2.
         """
         normal = chance.standard_normal((len(times), 2))
-        w = 2.0 * np.pi / self.period
-        state, result = normal[0], np.empty(len(times))
-        result[0] = state[0]
-        steps, kind = np.unique(np.round(np.diff(times), 9), return_inverse=True)
-        passages = [_passage(w * step, self.damping) for step in steps]
-        for number, which in enumerate(kind, start=1):
-            carried, added = passages[which]
-            state = carried @ state + added @ normal[number]
-            result[number] = state[0]
-        return self.rms * result
+        angle = 2.0 * np.pi / self.period * np.diff(times)
+        place, speed = normal[0].tolist()
+        result = [place]
+        for (a, b, c, d, e, f, g), (first, second) in zip(
+            _passages(angle, self.damping).T.tolist(), normal[1:].tolist(), strict=True
+        ):
+            place, speed = (
+                a * place + b * speed + e * first,
+                c * place + d * speed + f * first + g * second,
+            )
+            result.append(place)
+        return self.rms * np.array(result)
 
 
-def _passage(angle: float, damping: float) -> tuple[FloatArray, FloatArray]:
-    """Return what carries a unit spring's (place, speed) on by w t, and the root of the noise."""
-    from scipy.linalg import expm
+def _passages(angle: FloatArray, damping: float) -> FloatArray:
+    """Return how a unit spring (place, speed) passes on by angles w t (n,), as (7, n).
 
-    carried = expm(angle * np.array([[0.0, 1.0], [-1.0, -2.0 * damping]]))
-    values, axes = np.linalg.eigh(np.eye(2) - carried @ carried.T)
-    return carried, axes * np.sqrt(np.maximum(values, 0.0))
+    The four numbers of the matrix that carries it, by rows, and the three of the lower triangle
+    that makes the added noise of independent normal numbers (Cholesky): what is carried and what
+    is added have unit variance together.
+    """
+    root = np.sqrt(complex(1.0 - damping**2))
+    forth, back = (np.exp((-damping + sign * 1j * root) * angle) for sign in (1.0, -1.0))
+    even = 0.5 * (forth + back).real
+    odd = ((forth - back) / (2j * root)).real if root else angle * forth.real
+    a, b, c, d = even + damping * odd, odd, -odd, even - damping * odd
+    e = np.sqrt(np.maximum(1.0 - a**2 - b**2, 0.0))
+    f = np.divide(-(a * c + b * d), e, out=np.zeros_like(e), where=e > 0.0)
+    g = np.sqrt(np.maximum(1.0 - c**2 - d**2 - f**2, 0.0))
+    return np.array([a, b, c, d, e, f, g])
 
 
 @dataclass(frozen=True, kw_only=True)
