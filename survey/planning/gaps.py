@@ -110,27 +110,6 @@ def swath(
     )
 
 
-def corridor(polygons: FloatArray, pairs: NDArray[np.intp]) -> list[FloatArray]:
-    """Return the convex hulls of pairs of views: what lies between neighbours should be seen.
-
-    Parameters
-    ----------
-    polygons : array (frames, corners, 2)
-        What each frame sees [m]; nan where there is no ground.
-    pairs : array (pairs, 2)
-        Frames that are neighbours.
-    """
-    from scipy.spatial import ConvexHull
-
-    hulls = []
-    for pair in pairs:
-        corners = polygons[pair].reshape(-1, 2)
-        corners = corners[np.isfinite(corners).all(axis=1)]
-        if len(corners) >= 3:
-            hulls.append(corners[ConvexHull(corners).vertices])
-    return hulls
-
-
 def _counted(rings: Sequence[FloatArray], cells: CellGrid) -> NDArray[np.uint16]:
     """Return in how many rings each cell's centre lies."""
     from rasterio.enums import MergeAlg

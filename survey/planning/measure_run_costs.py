@@ -1,7 +1,7 @@
 """Make `data/run_costs.json` anew: ``python -m survey.planning.measure_run_costs``.
 
 Times are processor time of one worker on the machine at hand, which the file names. The column's
-error is that of one flash in a pixel, r.m.s. over the pixels of the middle.
+error is that of one flash in a pixel, smoothed as thresholds smooth it, the median of all pixels.
 """
 
 from __future__ import annotations
@@ -17,7 +17,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.constants import speed_of_light
+from scipy.ndimage import uniform_filter
 
+from survey.cloud.noise import NEIGHBOURS
 from survey.mission import fly, fly_frame
 from survey.planning.make_response_tables import as_text
 from survey.preparation import Mission, prepare
@@ -32,6 +34,7 @@ TIMED_DEPTHS = {"clear": (3.0, 12.0, 25.0), "coastal": (3.0, 8.0, 16.0), "harbor
 ERROR_DEPTHS = {"clear": 2.5, "coastal": 1.5, "harbor": 0.5}  # times 1 to 16 [m]
 BOTTOMLESS = 1000.0  # [m]
 ERROR_FLASHES = 6
+FAINTEST = 1e-30
 BINS = {"clear": 500, "coastal": 400, "harbor": 300}
 SIZED = {"water.type": "coastal", "flight.frames_per_line": 3}
 SIZED_DEPTH = 6.0
@@ -135,14 +138,18 @@ def _column_error(name: str, illumination: str) -> list[float]:
     mission = prepare(scenario)
     pose = mission.frames[0].pose
     flashes = [mission.engine.flash(pose=pose, frame=number) for number in range(ERROR_FLASHES)]
-    rows, columns = mission.camera.shape
-    middle = np.s_[rows // 4 : -rows // 4, columns // 4 : -columns // 4]
-    variance = np.mean([f.variance.sum(axis=0)[middle].mean(axis=(0, 1)) for f in flashes], axis=0)
-    column = np.mean([f.origin("column")[middle].mean(axis=(0, 1)) for f in flashes], axis=0)
-    relative = np.sqrt(variance) / np.maximum(column, 1e-30)
+    column = np.mean([flash.origin("column") for flash in flashes], axis=(0, 1, 2))
+    errors = [np.sqrt(_neighbourly(flash.variance.sum(axis=0))) for flash in flashes]
+    relative = np.median(np.concatenate(errors), axis=(0, 1)) / np.maximum(column, FAINTEST)
     height = pose.position[2] - mission.engine.surface.level
     depth = (0.5 * speed_of_light * flashes[0].times - height) / mission.engine.water.group_index
     return _rounded(np.interp(_error_depths(name), depth, relative))
+
+
+def _neighbourly(variance: NDArray[np.float32]) -> FloatArray:
+    """Return the variance as thresholds take it, see `survey.cloud.noise`."""
+    smooth = uniform_filter(variance, size=(NEIGHBOURS, NEIGHBOURS, 1))
+    return np.asarray(np.maximum(smooth, 0.0), np.float64)
 
 
 def _error_depths(name: str) -> FloatArray:

@@ -18,6 +18,7 @@ PARALLEL_SINE = 0.35  # 20 degrees
 NEAR_IN_VIEWS = 1.5
 LEAST_LATERAL_SHARE = 0.1
 STEPS_IN_VIEW = 8
+NEAR_EDGE = 0.95
 ROUNDING = 1e-6
 
 
@@ -82,15 +83,17 @@ def flight_directions(frames: Sequence[Frame]) -> FloatArray:
     )
 
 
-def one_after_another(frames: Sequence[Frame], seen: Views) -> Neighbours:
-    """Return the frames that follow each other on a line."""
+def one_after_another(frames: Sequence[Frame]) -> Neighbours:
+    """Return the frames that follow each other on a line; there, the direction of flight."""
     line = np.array([frame.line for frame in frames])
     first = np.flatnonzero(line[1:] == line[:-1])
-    pairs = np.column_stack([first, first + 1])
-    apart = seen.centre[pairs[:, 1], :2] - seen.centre[pairs[:, 0], :2]
-    length = np.linalg.norm(apart, axis=1)
-    moving = length > ROUNDING
-    return Neighbours(pairs=pairs[moving], direction=apart[moving] / length[moving, None])
+    directions = flight_directions(frames)
+    ahead = directions[first] + directions[first + 1]
+    length = np.linalg.norm(ahead, axis=1, keepdims=True)
+    onward = length[:, 0] > ROUNDING
+    return Neighbours(
+        pairs=np.column_stack([first, first + 1])[onward], direction=(ahead / length)[onward]
+    )
 
 
 def side_by_side(frames: Sequence[Frame], seen: Views) -> Neighbours:
@@ -109,7 +112,7 @@ def side_by_side(frames: Sequence[Frame], seen: Views) -> Neighbours:
     found = few[cKDTree(place[few]).query_pairs(NEAR_IN_VIEWS * width, output_type="ndarray")]
     one, other = np.concatenate([found, found[:, ::-1]]).T
     apart = place[other] - place[one]
-    along = np.sum(apart * directions[one], axis=1)
+    along = _along(apart, directions[one])
     lateral = _cross(directions[one], apart)
     parallel = np.abs(_cross(directions[one], directions[other])) < PARALLEL_SINE
     near = np.abs(along) <= 0.5 * np.maximum(spacing[one], spacing[other]) * (1.0 + ROUNDING)
@@ -120,11 +123,11 @@ def side_by_side(frames: Sequence[Frame], seen: Views) -> Neighbours:
 def overlap(neighbours: Neighbours, seen: Views) -> Overlap | None:
     """Return what the pairs see twice; None where no pair lies on known ground."""
     one, other = neighbours.pairs.T
-    ahead = neighbours.direction
-    front, back = (_reach(seen, one, sign * ahead) for sign in (1.0, -1.0))
-    facing = _reach(seen, other, -ahead)
-    apart = np.sum((seen.centre[other, :2] - seen.centre[one, :2]) * ahead, axis=1)
-    length = front + facing - apart
+    ahead, centre = neighbours.direction, seen.centre[:, :2]
+    front = _reach(seen, one, centre[one], ahead)
+    back = _reach(seen, one, centre[one], -ahead)
+    facing = _reach(seen, other, centre[other], -ahead)
+    length = front + facing - _along(centre[other] - centre[one], ahead)
     known = np.isfinite(length)
     if not known.any():
         return None
@@ -135,6 +138,52 @@ def overlap(neighbours: Neighbours, seen: Views) -> Overlap | None:
         share=float(np.median(share)),
         least_share=float(share.min()),
     )
+
+
+def between(neighbours: Neighbours, seen: Views) -> list[FloatArray]:
+    """Return what lies between the centres of pairs and abreast of both (4, 2) [m]: no holes there.
+
+    A view is taken to be as wide as it is at its centre or near the edge that faces the other,
+    whichever is less, so that ragged edges of a swath are no gaps.
+
+    Parameters
+    ----------
+    neighbours : Neighbours
+    seen : Views
+    """
+    ahead, centre = neighbours.direction, seen.centre[:, :2]
+    left = np.column_stack([-ahead[:, 1], ahead[:, 0]])
+    start, end = (centre[which] for which in neighbours.pairs.T)
+    low, high = np.full(len(start), -np.inf), np.full(len(start), np.inf)
+    for which, onward in zip(neighbours.pairs.T, (ahead, -ahead), strict=True):
+        facing = _reach(seen, which, centre[which], onward)[:, None] * onward
+        for origin in (centre[which], centre[which] + NEAR_EDGE * facing):
+            aside = _along(origin - start, left)
+            high = np.minimum(high, aside + _reach(seen, which, origin, left))
+            low = np.maximum(low, aside - _reach(seen, which, origin, -left))
+    across = np.stack([low, high, high, low], axis=1)[..., None] * left[:, None]
+    onward = _along(end - start, ahead)[:, None] * ahead
+    rings = start[:, None] + across
+    rings[:, 2:] += onward[:, None]
+    return list(rings[high > low])
+
+
+def triangles(following: Neighbours, beside: Neighbours, seen: Views) -> list[FloatArray]:
+    """Return the triangles (3, 2) of pairs on a line and a frame abreast [m]: no holes there.
+
+    They close the corners where four frames meet.
+    """
+    abreast: dict[int, list[int]] = {}
+    for one, other in beside.pairs.tolist():
+        abreast.setdefault(one, []).append(other)
+        abreast.setdefault(other, []).append(one)
+    corners = [
+        (one, other, third)
+        for one, other in following.pairs.tolist()
+        for third in (*abreast.get(one, []), *abreast.get(other, []))
+    ]
+    rings = (seen.centre[list(corner), :2] for corner in corners)
+    return [ring for ring in rings if np.isfinite(ring).all()]
 
 
 def _nearest_on_each_side(
@@ -152,13 +201,14 @@ def _nearest_on_each_side(
 
 
 def _thinned(frames: Sequence[Frame], spacing: FloatArray, *, step: float) -> Indices:
-    """Return every so many frames of each line that they lie about a step apart [m]."""
+    """Return the ends of each line and every so many frames that they lie a step apart [m]."""
     line = np.array([frame.line for frame in frames])
-    first = np.concatenate([[True], line[1:] != line[:-1]])
+    other = line[1:] != line[:-1]
+    first, last = np.append(True, other), np.append(other, True)
     count = np.arange(len(line))
     count -= np.maximum.accumulate(np.where(first, count, 0))
     every = np.maximum(step / np.maximum(spacing, ROUNDING * step), 1.0).astype(np.int64)
-    return np.flatnonzero((count % every == 0) | (spacing <= 0.0))
+    return np.flatnonzero((count % every == 0) | last)
 
 
 def _spacing(frames: Sequence[Frame]) -> FloatArray:
@@ -174,9 +224,13 @@ def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
     return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
 
-def _reach(seen: Views, which: Indices, direction: FloatArray) -> FloatArray:
-    """Return how far views go from their centres in directions (pairs, 2) [m]."""
-    ring = seen.outline[which, :, :2] - seen.centre[which, None, :2]
+def _along(apart: FloatArray, direction: FloatArray) -> FloatArray:
+    return np.asarray(np.sum(apart * direction, axis=1))
+
+
+def _reach(seen: Views, which: Indices, origin: FloatArray, direction: FloatArray) -> FloatArray:
+    """Return how far views go from places (pairs, 2) in directions (pairs, 2) [m]."""
+    ring = seen.outline[which, :, :2] - origin[:, None]
     along = np.einsum("pcx,px->pc", ring, direction)
     aside = ring[..., 1] * direction[:, None, 0] - ring[..., 0] * direction[:, None, 1]
     after, beside = np.roll(along, -1, axis=1), np.roll(aside, -1, axis=1)

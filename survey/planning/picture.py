@@ -21,7 +21,8 @@ DOTS_PER_INCH = 130
 MOST_OUTLINED = 600
 LONG = 2.5  # from this ratio of width to height on, maps stand over each other
 BELOW = 1.15  # what of the picture lies below the deepest limit
-VIEW, GAP, TRACK, NIGHT = "#0072b2", "#d55e00", "#303030", "#cc79a7"
+VIEW, GAP, TRACK, NIGHT, SEABED = "#0072b2", "#d55e00", "#303030", "#cc79a7", "#9a9a9a"
+AREA = "#009e73"
 """Okabe and Ito (2008), told apart by the colour-blind."""
 
 
@@ -85,6 +86,9 @@ def _map(axes: Axes, plan: SurveyPlan, cover: Coverage, words: str) -> None:
                 gaps, facecolors=GAP, edgecolors=GAP, alpha=0.6, transform=axes.transData
             )
         )
+    if plan.area is not None:
+        ring = np.concatenate([plan.area, plan.area[:1]]) + origin
+        axes.plot(*ring.T, color=AREA, ls="--", lw=1.2)
     _tracks(axes, plan)
     axes.autoscale_view()
     axes.set_aspect("equal", adjustable="datalim")
@@ -98,7 +102,8 @@ def _map(axes: Axes, plan: SurveyPlan, cover: Coverage, words: str) -> None:
 def _gap_words(cover: Coverage) -> str:
     if not cover.swath.gaps:
         return "no gaps"
-    return f"{len(cover.swath.gaps)} gaps (red), {cover.swath.gap_area:,.0f} m2"
+    count = len(cover.swath.gaps)
+    return f"{count} gap{'s' * (count > 1)} (red), {cover.swath.gap_area:,.0f} m2"
 
 
 def _tracks(axes: Axes, plan: SurveyPlan) -> None:
@@ -125,7 +130,15 @@ def _depths(axes: Axes, plan: SurveyPlan) -> None:
     known = np.isfinite(depth).any(axis=1)
     number, depth = np.arange(len(plan.frames))[known], depth[known]
     low, high = np.nanmin(depth, axis=1), np.nanmax(depth, axis=1)
-    axes.bar(number, high - low, bottom=low, width=1.0, color="#9a9a9a", label="under a frame")
+    axes.bar(
+        number,
+        high - low,
+        bottom=low,
+        width=1.0,
+        color=SEABED,
+        edgecolor=SEABED,
+        label="under a frame",
+    )
     expected = plan.expectation
     for limit, words, colour, style in (
         (expected.day, "limit by day", GAP, "-"),

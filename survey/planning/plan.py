@@ -12,16 +12,18 @@ from numpy.typing import NDArray
 from survey.flight.pose import Frame
 from survey.planning.expectation import Expectation, expectation
 from survey.planning.eye_safety import EyeSafety, eye_safety
-from survey.planning.gaps import Swath, corridor, swath
+from survey.planning.gaps import Swath, swath
 from survey.planning.overlap import (
     Overlap,
+    between,
     flight_directions,
     one_after_another,
     overlap,
     side_by_side,
+    triangles,
 )
 from survey.planning.run_costs import RunSize, output_bytes, run_seconds
-from survey.planning.views import Ground, UnderWater, Views, WaterSurface, views
+from survey.planning.views import SAMPLES_ON_EDGE, Ground, UnderWater, Views, WaterSurface, views
 from survey.preparation import MODEL_FLASHES, RAW_STEPS
 from survey.scenario import components
 from survey.scenario.scenario import Scenario
@@ -69,6 +71,8 @@ class SurveyPlan:
     surface, bottom, bottom_in_air : Coverage
         At the water surface; on the seabed by bent rays, and by the straight rays of
         [Lisenko2017].
+    area : array (n, 2), optional
+        What the flight was ordered to cover [m, local].
     depth : (float, float, float)
         Least, median and greatest depth at the outlines of the views [m]; nan where all is dry.
     expectation : Expectation
@@ -90,6 +94,7 @@ class SurveyPlan:
     surface: Coverage
     bottom: Coverage
     bottom_in_air: Coverage
+    area: FloatArray | None
     depth: tuple[float, float, float]
     expectation: Expectation
     eye: EyeSafety
@@ -171,6 +176,7 @@ def make_plan(scenario: Scenario) -> SurveyPlan:
         surface=at_surface,
         bottom=bottom,
         bottom_in_air=in_air,
+        area=area,
         depth=depth,
         expectation=expectation(scenario, seabed=seabed, height=height),
         eye=_eye(scenario, camera, height),
@@ -184,17 +190,20 @@ def make_plan(scenario: Scenario) -> SurveyPlan:
 def _coverage(
     camera: Camera, frames: Sequence[Frame], ground: Ground, area: FloatArray | None
 ) -> Coverage:
-    """Return what frames see of a ground; without an area, all between neighbours is to be seen."""
+    """Return what frames see; without an area, all that lies between neighbours is to be seen."""
     seen = views(camera, frames, ground)
-    following, beside = one_after_another(frames, seen), side_by_side(frames, seen)
-    polygons = seen.polygons()
-    pairs = np.concatenate([following.pairs, beside.pairs])
-    planned = corridor(seen.outline[..., :2], pairs) if area is None else [area]
+    following, beside = one_after_another(frames), side_by_side(frames, seen)
+    inner = [*between(following, seen), *between(beside, seen)]
+    inner += triangles(following, beside, seen)
     return Coverage(
         views=seen,
         forward=overlap(following, seen),
         side=overlap(beside, seen),
-        swath=swath(polygons, planned, direction=flight_directions(frames)[0]),
+        swath=swath(
+            seen.polygons(),
+            inner if area is None else [area],
+            direction=flight_directions(frames)[0],
+        ),
     )
 
 
@@ -221,7 +230,7 @@ def _eye(scenario: Scenario, camera: Camera, height: float) -> EyeSafety:
 
 def _seabed_fault(seabed: Seabed, at_surface: Views) -> str | None:
     try:
-        seabed.require_coverage(at_surface.polygons())
+        seabed.require_coverage(list(at_surface.outline[:, ::SAMPLES_ON_EDGE, :2]))
     except CoverageError as fault:
         return str(fault)
     return None

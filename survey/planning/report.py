@@ -171,15 +171,16 @@ def as_text(plan: SurveyPlan) -> str:
             f"density       {plan.density:.2f} points/m2 of the seabed if every pixel finds it, "
             f"{plan.frame_density:.2f} in one frame",
             f"depth limit   day {expected.day.depth:.1f} m, night {expected.night.depth:.1f} m"
-            f"{limited}; a run with these walks shows {expected.run_day.depth:.1f} and "
+            f"{limited}",
+            f"              a run with these walks shows {expected.run_day.depth:.1f} and "
             f"{expected.run_night.depth:.1f} m",
             f"              {expected.basis}; reflectance {expected.reflectance:.2g}",
             f"run           {plan.output_bytes / 1e6:.0f} MB, {_duration(plan.run_seconds)} with "
             f"{plan.workers} workers (figures measured on {machine()})",
             f"laser hazard  to {eye.distance:.0f} m below the aircraft, through binoculars "
             f"{BINOCULARS} to {eye.binocular_distance:.0f} m",
-            f"              at the water {eye.at_water:.2g} J/m2 a pulse, {eye.limit:.2g} allowed: "
-            + _eye_words(plan),
+            f"              at the water {eye.at_water:.2g} J/m2 a pulse, {eye.limit:.2g} allowed",
+            f"              {_eye_words(plan)}",
             f"              by {SOURCE}",
         )
     )
@@ -198,7 +199,7 @@ def _grounds(plan: SurveyPlan) -> tuple[Coverage, Coverage, Coverage]:
 
 def _row(*cells: str) -> str:
     first, *others = cells
-    return f"{first:16}" + "".join(f"{cell:>27}" for cell in others)
+    return f"{first:16}" + "".join(f"{cell:>29}" for cell in others)
 
 
 def _depth_words(shallow: float, median: float, deep: float) -> str:

@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import replace
+from importlib import resources
+
 import numpy as np
 import pytest
 
 from survey.flight.pose import Frame, Pose
 from survey.optics.water import Water, petzold_water
 from survey.planning import water_response as responses
-from survey.planning.gaps import corridor, swath
-from survey.planning.overlap import one_after_another, overlap, side_by_side
+from survey.planning.gaps import Swath, swath
+from survey.planning.make_response_tables import tables
+from survey.planning.overlap import (
+    between,
+    one_after_another,
+    overlap,
+    side_by_side,
+    triangles,
+)
 from survey.planning.response_table import response_table
 from survey.planning.views import WaterSurface, views
 from survey.sensor.camera import Camera
@@ -75,7 +86,7 @@ def test_lines_that_cross_are_no_neighbours() -> None:
     frames = [*line(0, 0.0), *across]
     seen = views(CAMERA, frames, WaterSurface(level=0.0))
     assert len(side_by_side(frames, seen).pairs) == 0
-    assert len(one_after_another(frames, seen).pairs) == 4
+    assert len(one_after_another(frames).pairs) == 4
 
 
 def test_many_flashes_a_view_are_thinned_and_give_the_same_sidelap() -> None:
@@ -99,16 +110,48 @@ def test_many_flashes_a_view_are_thinned_and_give_the_same_sidelap() -> None:
     assert found.length == pytest.approx(11.2)
 
 
-def test_a_gap_between_lines_is_found_with_its_area() -> None:
-    frames = two_lines(80.0)
+def test_overlap_of_unlike_views() -> None:
+    """From 200 m 51.2 m ahead are seen, from 100 m 25.6 m back."""
+    frames = line(0, 0.0, frames=2)
+    for frame, height, north in zip(frames, (200.0, 100.0), (0.0, 70.0), strict=True):
+        frame.pose.position[1:] = north, height
     seen = views(CAMERA, frames, WaterSurface(level=0.0))
-    neighbours = (one_after_another(frames, seen), side_by_side(frames, seen))
-    planned = corridor(seen.outline[..., :2], np.concatenate([n.pairs for n in neighbours]))
-    found = swath(seen.polygons(), planned, direction=np.array([0.0, 1.0]))
-    (gap,) = found.gaps
+    found = overlap(one_after_another(frames), seen)
+    assert found is not None
+    assert (found.length, found.share) == pytest.approx((6.8, 6.8 / 102.4))
+
+
+def missed(frames: list[Frame], camera: Camera = CAMERA) -> Swath:
+    seen = views(camera, frames, WaterSurface(level=0.0))
+    following, beside = one_after_another(frames), side_by_side(frames, seen)
+    planned = [*between(following, seen), *between(beside, seen)]
+    planned += triangles(following, beside, seen)
+    return swath(seen.polygons(), planned, direction=np.array([0.0, 1.0]))
+
+
+def test_a_gap_between_lines_is_found_with_its_area() -> None:
+    (gap,) = missed(two_lines(80.0)).gaps
     assert gap.area == pytest.approx((80.0 - 51.2) * 302.4, rel=0.005)
     low, high = gap.rings[0].min(axis=0), gap.rings[0].max(axis=0)
     assert (low[0], high[0]) == pytest.approx((25.6, 54.4), abs=0.3)
+
+
+def test_gaps_both_ways_are_one_with_the_corners_between_four_frames() -> None:
+    turned = Camera(rows=32, columns=64, pixel_tangent=0.008, long_side="across")
+    (gap,) = missed(two_lines(130.0), turned).gaps
+    along, aside = 48.8, 130.0 - 102.4
+    alongside = 2 * 2 * along * 102.4  # between frames of both lines
+    assert gap.area == pytest.approx(alongside + aside * (3 * 51.2 + 2 * along), rel=0.01)
+
+
+def test_swinging_views_leave_ragged_edges_that_are_no_gaps() -> None:
+    frames = [
+        replace(frame, pose=replace(frame.pose, roll=np.radians(roll), heading=np.radians(yaw)))
+        for frame, roll, yaw in zip(
+            line(0, 0.0, frames=4), (0.0, 3.0, -3.0, 3.0), (1.0, -1.0, 1.0, 0.0), strict=True
+        )
+    ]
+    assert missed(frames).gaps == []
 
 
 def test_an_ordered_area_counts_and_not_what_lies_beside_it() -> None:
@@ -138,6 +181,23 @@ def test_tables_fall_with_depth_and_share_out_all_their_light(name: str, lit: st
     assert table.two_way_at(np.array([0.0, *table.depth[1:3]])) == pytest.approx(table.two_way[:3])
     deeper = 1.2 * table.depth[-1]
     assert 0.0 < table.two_way_at(np.array([deeper]))[0] < table.two_way[-1]
+
+
+def test_the_script_makes_the_shipped_tables() -> None:
+    """With a fiftieth of the walks, at a depth where a tenth of the light comes back."""
+    made = tables(work=0.02)
+    folder = resources.files("survey.planning") / "data"
+    shipped = json.loads((folder / "response_tables.json").read_text(encoding="utf-8"))
+    assert set(made) == set(shipped)
+    assert made["late_edges_m"] == shipped["late_edges_m"]
+    for name, water in shipped["waters"].items():
+        again = made["waters"][name]
+        assert again["depth_m"] == water["depth_m"]
+        at = int(np.searchsorted(-np.array(water["flood"]["two_way"]), -0.1))
+        for lit in ("flood", "isolated"):
+            error = np.hypot(again[lit]["two_way_sem"][at], water[lit]["two_way_sem"][at])
+            assert abs(again[lit]["two_way"][at] - water[lit]["two_way"][at]) < 4.0 * error
+            assert len(again[lit]["column_sem"]) == len(water[lit]["column_per_m_sr"])
 
 
 def test_a_flood_sends_back_more_than_an_isolated_pixel() -> None:
