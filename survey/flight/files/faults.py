@@ -67,6 +67,8 @@ def numbers(
         With the first rows that have another number of columns or a word, a line each.
     """
     filled = [row for row in rows if row.strip()]
+    if not filled:
+        return np.empty((0, len(names)))
     try:
         table = np.loadtxt(filled, delimiter=separator, ndmin=2, comments=None)
         if table.shape[1] == len(names):

@@ -73,7 +73,7 @@ def _corners(path: Path, ring: Any) -> FloatArray:
     """Return the coordinates (n, 2) of a ring without the repeated end."""
     try:
         corners = np.array([[float(place[0]), float(place[1])] for place in ring])
-    except (TypeError, ValueError, IndexError, KeyError) as error:
+    except (TypeError, ValueError, IndexError, KeyError, OverflowError) as error:
         raise FlightFileError(path, ["a corner is not a pair of numbers"]) from error
     if len(corners) > 1 and (corners[0] == corners[-1]).all():
         corners = corners[:-1]
