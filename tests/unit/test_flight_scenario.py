@@ -23,7 +23,8 @@ from survey.scenario.motion_parts import build_motion, build_navigation
 from survey.scenario.toml_text import to_toml
 
 CORNERS = [[5.0e5, 6.0e6], [5.002e5, 6.0e6], [5.002e5, 6.0006e6], [5.0e5, 6.0006e6]]
-WIDE_GATE = {"gate_start_ns": 1000.0, "bins": 900}
+RECEIVER = {"aperture_radius_m": 0.005, "filter_width_nm": 1.0}
+WIDE_RECEIVER = {**RECEIVER, "gate_start_ns": 1000.0, "bins": 900}
 
 
 @pytest.fixture
@@ -92,6 +93,7 @@ def test_resolved_scenarios_with_files_fly_the_same(make: Any, tmp_path: Path) -
             flight={"corners_m": CORNERS, "heading_deg": 10.0},
             motion={"roll": swings, "height": [{"rms_m": 1.0, "period_s": 20.0}]},
             navigation={"gnss_white_up_m": 0.1, "trajectory_files": ["sbet"]},
+            receiver=WIDE_RECEIVER,
         ),
     ]
     for scenario in flown:
@@ -127,7 +129,7 @@ def test_units_and_senses_of_motion_and_navigation(make: Any) -> None:
             **{"gnss_bias_up_m": 0.2, "ins_white_heading_deg": 0.01, "boresight_pitch_deg": 10.0},
             **{"boresight_error_pitch_deg": 1.0, "lever_arm_error_right_m": 0.1},
         },
-        receiver={"aperture_radius_m": 0.005, "filter_width_nm": 1.0, **WIDE_GATE},
+        receiver=WIDE_RECEIVER,
     )
     motion, navigation = build_motion(scenario.motion), build_navigation(scenario.navigation)
     assert motion.pitch_mean == pytest.approx(np.radians(2.0))
@@ -226,7 +228,7 @@ def test_faults_of_a_trajectory_are_told_with_those_of_other_sections(
 @pytest.mark.parametrize(
     ("flight", "words"),
     [
-        ({"height_m": 200.0}, "the gate closes at"),
+        ({"height_m": 190.0}, "the gate closes at 1538 ns, before the corner pixels"),
         ({"legs_s": [[3.0, 1.0]]}, "flight.legs_s.0: [3, 1] does not follow 0 s. Sort the legs."),
         ({"legs_s": [[1.0, 99.0]]}, "flight.legs_s.0: 99 s is beyond the file's last record at 10"),
         ({"offset_up_m": -400.0}, "comes down to -170 m above the water"),
@@ -256,16 +258,14 @@ def test_a_recorded_flight_takes_no_other_motion(make: Any, tmp_path: Path) -> N
 
 
 def test_a_gate_too_short_for_the_roll_is_told(make: Any) -> None:
-    swings = [{"rms_deg": 4.0, "period_s": 6.0}]
+    swings = [{"rms_deg": 6.0, "period_s": 6.0}]
     (line,) = faults_of(make, motion={"roll": swings})
     assert line.startswith("receiver.bins: the gate closes at 1604 ns, before the corner pixels")
-    assert "(height 200 m, roll 16.0, pitch 0.0 degrees)" in line
+    assert "(height 200 m, roll 24.0, pitch 0.0 degrees)" in line
     bins = int(line.split("at least ")[1].split()[0])
-    wide = {"aperture_radius_m": 0.005, "filter_width_nm": 1.0, "bins": bins}
-    assert make(motion={"roll": swings}, receiver=wide)
-    wide["bins"] = bins - 2
-    assert faults_of(make, motion={"roll": swings}, receiver=wide)
-    (line,) = faults_of(make, motion={"roll": [{"rms_deg": 20.0, "period_s": 6.0}]})
+    assert make(motion={"roll": swings}, receiver={**RECEIVER, "bins": bins})
+    assert faults_of(make, motion={"roll": swings}, receiver={**RECEIVER, "bins": bins - 2})
+    (line,) = faults_of(make, motion={"roll": [{"rms_deg": 22.0, "period_s": 6.0}]})
     assert line.startswith("flight: corner pixels look above the horizon")
 
 

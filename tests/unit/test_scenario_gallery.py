@@ -45,6 +45,7 @@ def test_every_scenario_is_sound_and_says_what_to_expect(name: str) -> None:
 
 def test_the_gallery_is_complete() -> None:
     names = {"measured-seabed", "sandbar", "wreck", "turned-footprint", "too-deep"}
+    names |= {"rolling-aircraft", "area-survey"}
     assert names | PAPER.keys() <= gallery().keys()
 
 
@@ -85,6 +86,40 @@ def test_measured_seabed_gate_holds_land_and_depth() -> None:
 def test_turned_footprint_leaves_gaps_of_49_m() -> None:
     first, second = outlines_on_map(load_scenario("turned-footprint"))[:2]
     assert second[:, 0].min() - first[:, 0].max() == pytest.approx(48.8)
+
+
+def test_area_survey_covers_its_polygon_with_six_lines_and_a_cross_line() -> None:
+    scenario = load_scenario("area-survey")
+    frames = components.frames(scenario)
+    headings = {frame.line: frame.pose.heading for frame in frames}
+    turned = np.degrees(list(headings.values())) - 65.0
+    assert np.cos(np.radians(turned)) == pytest.approx([1, -1, 1, -1, 1, -1, 0], abs=0.1)
+    ring, origin = components.survey_area(scenario), components.map_frame(scenario).origin[:2]
+    assert ring is not None
+    cells = np.mgrid[0:800:5, 0:600:5].reshape(2, -1).T + ring.min(axis=0) + origin
+    wanted = contains(ring + origin, cells)
+    views = [footprint(components.camera(scenario), frame.pose, 0.0) + origin for frame in frames]
+    seen = np.any([contains(view, cells) for view in views], axis=0)
+    assert wanted.sum() * 25.0 == pytest.approx(1.4e5, rel=0.1)
+    assert seen[wanted].mean() > 0.99
+
+
+def contains(ring: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Tell which places (n, 2) lie in a ring (corners, 2)."""
+    from matplotlib.path import Path as Ring
+
+    return np.asarray(Ring(ring).contains_points(places))
+
+
+def test_rolling_aircraft_rolls_as_far_as_it_says_and_points_into_the_wind() -> None:
+    scenario = load_scenario("rolling-aircraft")
+    frames = components.frames(scenario)
+    roll = np.degrees([frame.measured.roll for frame in frames])
+    assert 0.7 < roll.std() < 3.0
+    crab = np.degrees([frame.pose.heading for frame in frames]) - np.repeat([90.0, 270.0], 8)
+    assert crab.reshape(2, 8).mean(axis=1) == pytest.approx([-6.8, 6.8], abs=0.8)
+    error = np.degrees([frame.measured.roll - frame.pose.roll for frame in frames])
+    assert error.mean() == pytest.approx(-0.1, abs=0.01)
 
 
 def test_wreck_lies_under_the_flight() -> None:
