@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from terrain.cell_binning import PADDING
-from terrain.kernels import kernel, leaf_kernel
+from terrain.kernels import inlined_kernel, kernel, leaf_kernel
 from terrain.seabed_grid import SeabedGrid, build_grid
 
 __all__ = ["SeabedGrid", "build_grid", "cast_rays", "first_hit"]
@@ -64,7 +64,7 @@ def first_hit(
     return _traverse(grid, Ray(ox, oy, oz, dx, dy, dz, 1.0 / dx, 1.0 / dy, t_max))
 
 
-@leaf_kernel
+@inlined_kernel
 def _above_all_cells(
     grid: SeabedGrid, x_a: float, y_a: float, x_b: float, y_b: float, lowest: float
 ) -> bool:
@@ -118,7 +118,7 @@ def _t_leaving(
     return np.inf
 
 
-@leaf_kernel
+@inlined_kernel
 def _traverse(grid: SeabedGrid, ray: Ray) -> tuple[float, int]:
     """Walk the upper cells under the ray, nearest first."""
     x0, y0, cell, nx, ny = grid.x0, grid.y0, grid.cell, grid.nx, grid.ny
@@ -149,7 +149,7 @@ def _traverse(grid: SeabedGrid, ray: Ray) -> tuple[float, int]:
     return best, face
 
 
-@leaf_kernel
+@inlined_kernel
 def _search_cell(
     grid: SeabedGrid,
     ray: Ray,
@@ -185,7 +185,7 @@ def _search_cell(
     return best, face
 
 
-@leaf_kernel
+@inlined_kernel
 def _nearest_face(
     grid: SeabedGrid, ray: Ray, lower: int, best: float, face: int
 ) -> tuple[float, int]:

@@ -26,7 +26,7 @@ from survey.transport.scene import Medium, Scene
 from survey.transport.surface import drawn_normal, enter_water, facing_from_below
 from survey.transport.tally import BOTTOM, COLUMN, Tally, deposit
 from survey.transport.tracks import Tracks, axes_around
-from terrain.kernels import inlined_kernel, leaf_kernel
+from terrain.kernels import inlined_kernel
 from terrain.raycast import first_hit
 
 FLATTEST = 0.01
@@ -104,7 +104,7 @@ def light_sent(
     stray_x, stray_y = east - flat_x, north - flat_y
     px, py = x - flat_x - stray_x * shrink, y - flat_y - stray_y * shrink
     lean = 0.5 * (ray.radial + ray.tangential) * shrink
-    thinned /= 1.0 + lean * (stray_x * slope_x + stray_y * slope_y)
+    thinned *= min(2.0, max(0.0, 1.0 - lean * (stray_x * slope_x + stray_y * slope_y)))
     level = scene.sea.level
     light = light_on_water(optics, level, px, py, sight.pixel, method.isolated)
     if light == 0.0:
@@ -171,7 +171,7 @@ def add_bottom(
         return
     if not is_open(scene, tally, legs, along, place.x - east, place.y - north):
         return
-    path += along + deeper / dz
+    path += along - min(deeper / -dz, along)
     whole = path + place.path
     photons = method.photons * strength * light * facing / abs(dz) * place.gain
     deposit(
@@ -236,7 +236,7 @@ def add_column(
         )  # fmt: skip
 
 
-@leaf_kernel
+@inlined_kernel
 def send_light(
     scene: Scene,
     medium: Medium,

@@ -82,7 +82,7 @@ def facing_normal(
     return nx, ny, nz
 
 
-@leaf_kernel
+@inlined_kernel
 def walk_back(
     scene: Scene,
     medium: Medium,
@@ -357,5 +357,5 @@ def see_all(
                     state,
                 )  # fmt: skip
         for origin in range(2):
-            add_up(tally, origin, pixel, mean)
-            tell_variance(tally, origin, pixel, mean, variance)
+            add_up(tally, origin, mean[origin, pixel])
+            tell_variance(tally, origin, mean[origin, pixel], variance[origin, pixel])

@@ -11,6 +11,8 @@ from terrain.kernels import leaf_kernel
 
 COLUMN, BOTTOM = 0, 1
 
+FloatRow = NDArray[np.float32]
+
 
 class TimeBins(NamedTuple):
     """Evenly spaced bins, named by the first one's early edge."""
@@ -78,58 +80,60 @@ def lit_bins(tally: Tally, origin: int) -> tuple[int, int]:
 
 
 @leaf_kernel
-def add_up(tally: Tally, origin: int, pixel: int, mean: NDArray[np.float32]) -> None:
-    """Write the photons of an origin to its pixel's row, the pulse's width included."""
-    taps, bins = tally.taps, mean.shape[2]
-    scale = np.float32(1.0 / tally.coarse.shape[0])
-    first, last = lit_bins(tally, origin)
-    for i in range(bins):
-        mean[origin, pixel, i] = 0.0
+def smear(source: FloatRow, taps: FloatRow, first: int, last: int, target: FloatRow) -> None:
+    """Add the lit bins ``first`` to ``last`` of a row to ``target``, each spread over the taps."""
     for tap in range(taps.shape[0]):
-        share = taps[tap] * scale
-        for i in range(max(first - tap, 0), min(last - tap, bins)):
-            mean[origin, pixel, i] += share * tally.fine[origin, i + tap]
+        share, shifted = taps[tap], target[tap:]
+        for i in range(first, last):
+            shifted[i] += share * source[i]
 
 
 @leaf_kernel
-def tell_variance(
-    tally: Tally,
-    origin: int,
-    pixel: int,
-    mean: NDArray[np.float32],
-    variance: NDArray[np.float32],
-) -> None:
+def add_up(tally: Tally, origin: int, mean: FloatRow) -> None:
+    """Write the photons of an origin to its pixel's row, the pulse's width included."""
+    taps, bins = tally.taps, mean.shape[0]
+    scale = np.float32(1.0 / tally.coarse.shape[0])
+    first, last = lit_bins(tally, origin)
+    mean[:] = 0.0
+    for tap in range(taps.shape[0]):
+        share, shifted = taps[tap] * scale, tally.fine[origin, tap:]
+        for i in range(max(first - tap, 0), min(last - tap, bins)):
+            mean[i] += share * shifted[i]
+
+
+@leaf_kernel
+def tell_variance(tally: Tally, origin: int, mean: FloatRow, variance: FloatRow) -> None:
     """Write the squared standard error of a pixel's row of ``mean``, the mean of the replicates.
 
     The relative error is told in coarse bins, within which the pulse makes all fine ones rise and
     fall together, and goes over evenly from the middle of one to the next.
     """
-    coarse, taps, rows = tally.coarse, tally.coarse_taps, tally.rows
+    coarse, taps = tally.coarse, tally.coarse_taps
+    total, squares, one = tally.rows[0], tally.rows[1], tally.rows[2]
     replicates, pad, reach = coarse.shape[0], tally.taps.shape[0] // 2, taps.shape[0]
     first, last = lit_bins(tally, origin)
     first, last = first // tally.width, (last - 1) // tally.width + 1
-    rows[:] = 0.0
+    tally.rows[:] = 0.0
     for batch in range(replicates):
         for i in range(first, last + reach):
-            rows[2, i] = 0.0
-        for tap in range(reach):
-            for i in range(first, last):
-                rows[2, i + tap] += taps[tap] * coarse[batch, origin, i]
+            one[i] = 0.0
+        smear(coarse[batch, origin], taps, first, last, one)
         for i in range(first, last + reach):
-            rows[0, i] += rows[2, i]
-            rows[1, i] += rows[2, i] * rows[2, i]
-    share, scale = np.float32(1.0 / replicates), np.float32(replicates / (replicates - 1.0))
-    rows[2] = 0.0
+            total[i] += one[i]
+            squares[i] += one[i] * one[i]
+    relative, share = one, np.float32(1.0 / replicates)
+    relative[:] = 0.0
+    scale = np.float32(replicates / (replicates - 1.0))
     for i in range(first, last + reach):
-        squared = rows[0, i] * rows[0, i]
+        squared = total[i] * total[i]
         if squared > 0.0:
-            rows[2, i] = max(np.float32(0.0), rows[1, i] / squared - share) * scale
+            relative[i] = max(np.float32(0.0), squares[i] / squared - share) * scale
     per_bin = 1.0 / tally.width
-    for i in range(variance.shape[2]):
+    for i in range(variance.shape[0]):
         place = (i + pad + 0.5) * per_bin - 0.5 + reach // 2
         low = int(place)
-        relative = rows[2, low] + (place - low) * (rows[2, low + 1] - rows[2, low])
-        variance[origin, pixel, i] = mean[origin, pixel, i] * mean[origin, pixel, i] * relative
+        between = relative[low] + (place - low) * (relative[low + 1] - relative[low])
+        variance[i] = mean[i] * mean[i] * between
 
 
 @leaf_kernel
