@@ -138,8 +138,8 @@ class Transport(Section):
     """How many light paths the Monte Carlo makes and where it splits them."""
 
     walks_per_pixel: Annotated[int, Field(ge=3)] = 64
-    replicates: Annotated[int, Field(ge=3)] = 8
-    tracks_per_replicate: Annotated[int, Field(ge=16)] = 512
+    replicates: Annotated[int, Field(ge=3)] = 4
+    tracks_per_replicate: Annotated[int, Field(ge=16)] = 1024
     split_angle_deg: Annotated[float, Field(gt=0.0, lt=90.0)] = 45.0
     column_spacing: Positive = 1.0
 
