@@ -20,7 +20,7 @@ MOST_STEPS = 60
 class WaveLattice(NamedTuple):
     """The sheet over one rectangle at one time.
 
-    ``x0, y0`` of the first node, ``per_cell`` inverse of the spacing, ``nx, ny`` count of the nodes.
+    ``x0, y0`` of the first node, ``per_cell`` inverse of the spacing, ``nx, ny`` count of nodes.
     ``level`` mean elevation, ``lowest, highest`` bounds of the elevation [m], ``steepest`` of the
     slope. ``coefficients`` (ny, nx) of the spline [m].
     """

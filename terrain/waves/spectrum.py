@@ -1,9 +1,9 @@
 """Spectra of wind waves: how much of the elevation's variance stands at which frequency.
 
-Pierson and Moskowitz (1964) for fully developed seas, Hasselmann et al. (1973), JONSWAP, for growing
-ones. Formulas and numbers as in Stewart, Introduction to Physical Oceanography (2008), section 16.4,
-in hertz. There the first has its peak at omega = 0.877 g / U19.5, eq. (16.30); here at the 0.817 g /
-U10 that goes with it.
+Pierson and Moskowitz (1964) for fully developed seas, Hasselmann et al. (1973), JONSWAP, for those
+that grow. Formulas and numbers as in Stewart, Introduction to Physical Oceanography (2008), section
+16.4, but in hertz. There the first has its peak at omega = 0.877 g / U19.5, eq. (16.30); here at
+the 0.817 g / U10 that goes with that.
 """
 
 from __future__ import annotations
