@@ -160,7 +160,7 @@ class WaveField:
         patch = self._wind_waves(time)
         coefficients = level + patch[np.ix_(rows % self.nodes, columns % self.nodes)]
         for one in self.swell:
-            _add_swell(coefficients, one, time, columns * self.spacing, rows * self.spacing)
+            _add_swell(coefficients, one, time, columns, rows, self.spacing)
         return build_lattice(
             x0=float(columns[0] * self.spacing),
             y0=float(rows[0] * self.spacing),
@@ -203,13 +203,17 @@ def _nodes_over(low: float, high: float, spacing: float) -> NDArray[np.int64]:
 
 
 def _add_swell(
-    coefficients: FloatArray, waves: PlaneWaves, time: float, x: FloatArray, y: FloatArray
+    coefficients: FloatArray,
+    waves: PlaneWaves,
+    time: float,
+    columns: NDArray[np.int64],
+    rows: NDArray[np.int64],
+    spacing: float,
 ) -> None:
-    spacing = x[1] - x[0]
     response = spline_response(waves.kx * spacing) * spline_response(waves.ky * spacing)
-    along = np.exp(1j * np.multiply.outer(y, waves.ky))
+    along = np.exp(1j * np.multiply.outer(rows * spacing, waves.ky))
     along *= waves.amplitude / response * np.exp(1j * (waves.phase - waves.frequency * time))
-    across = np.exp(1j * np.multiply.outer(waves.kx, x))
+    across = np.exp(1j * np.multiply.outer(waves.kx, columns * spacing))
     # Not by a product of matrices, whose rounding may depend on the number of threads.
     coefficients += np.einsum("yn,nx->yx", along.real, across.real)
     coefficients -= np.einsum("yn,nx->yx", along.imag, across.imag)
