@@ -128,14 +128,17 @@ def first_crossing(waves: WaveLattice, start: FloatArray, way: FloatArray, reach
 def test_rays_meet_the_surface_where_a_search_finds_it(
     waves: WaveLattice, from_above: bool, least: float, most: float
 ) -> None:
-    """Steep rays and rays as flat as the waves, which may meet several: the first counts."""
+    """Steep rays and rays as flat as the waves, which may meet several: the first counts.
+
+    Some have passed the surface before they start, and meet none.
+    """
     rng = np.random.default_rng(6)
     way = directions(rng, rng.uniform(least, most, 60))
     way[:, 2] *= 1.0 if from_above else -1.0
     found = 0
     for direction in way:
         start = np.append(rng.uniform(-15.0, 15.0, 2), LEVEL)
-        start -= direction * rng.uniform(0.0, 6.0)
+        start -= direction * rng.uniform(-1.0, 6.0)
         expected = first_crossing(waves, start, direction, 20.0)
         t, slope_x, slope_y = meets_surface(waves, *start, *direction, 20.0)
         assert t == pytest.approx(expected, abs=1e-6)
@@ -145,7 +148,7 @@ def test_rays_meet_the_surface_where_a_search_finds_it(
             assert (slope_x, slope_y) == pytest.approx(true_slopes, abs=2e-3)
             assert meets_surface(waves, *start, *direction, expected - 1e-5)[0] == float("inf")
             found += 1
-    assert found > 15
+    assert found > 10
 
 
 def test_agrees_with_embree_on_the_mesh(waves: WaveLattice) -> None:
