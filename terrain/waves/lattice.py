@@ -110,7 +110,8 @@ def meets_surface(
 
     From above or from below; (inf, 0, 0) when it does not within 0 < t <= t_max, which is finite.
     The direction has length one. A ray that starts on the surface may meet it there again: start
-    it some micrometres off.
+    it some micrometres off. Departure: a ray within some degrees of the level may pass unseen
+    through a crest that it cuts less than a cell wide.
     """
     across = math.sqrt(dx * dx + dy * dy)
     if abs(dz) > waves.steepest * across:  # steeper than any wave: the line meets it once
