@@ -2,7 +2,7 @@
 
 Wind waves stand on a square patch that repeats itself, made by a Fourier transform for every time
 asked; swell is added wave by wave and repeats nowhere. Departures: the waves are independent and
-Gaussian, crests as round as troughs; between its nodes the sheet has 1 % less slope variance.
+Gaussian, crests as round as troughs; between its nodes the sheet has 0.4 % less slope variance.
 """
 
 from __future__ import annotations

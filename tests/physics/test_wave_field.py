@@ -78,15 +78,15 @@ def test_expectations_are_the_integrals_of_the_spectrum(name: str) -> None:
 
 @pytest.mark.parametrize("name", SEAS)
 def test_realised_height_and_slopes(name: str) -> None:
-    """Means over 64 patches of 128 m, errors below 2 % of the variance and 0.5 % of the slopes'.
+    """Means over 64 patches of 128 m, errors below 2 % of the variance and 0.7 % of the slopes'.
 
-    The sheet has 1 % less slope variance than its waves, of which the shortest have four nodes.
+    The sheet has 0.4 % less slope variance than its waves, of which the shortest have four nodes.
     """
     ratios = realisations(name)
     error = ratios.std(axis=0, ddof=1) / np.sqrt(len(ratios))
-    assert np.all(error < [0.02, 0.005])
+    assert np.all(error < [0.02, 0.007])
     assert abs(ratios[:, 0].mean() - 1.0) < 3.0 * error[0]
-    assert abs(ratios[:, 1].mean() - 0.99) < 3.0 * error[1]
+    assert abs(ratios[:, 1].mean() - 0.996) < 3.0 * error[1]
 
 
 def test_sampling_error_is_that_of_gaussian_waves() -> None:
