@@ -17,6 +17,7 @@ from terrain.waves import (
     elevation_and_slopes,
     meets_surface,
 )
+from terrain.waves.lattice import build_lattice
 
 FloatArray = NDArray[np.float64]
 HALF = 40.0
@@ -149,6 +150,19 @@ def test_rays_meet_the_surface_where_a_search_finds_it(
             assert meets_surface(waves, *start, *direction, expected - 1e-5)[0] == float("inf")
             found += 1
     assert found > 10
+
+
+@pytest.mark.parametrize(("height", "fall"), [(0.3, -0.01), (0.3, 0.0), (-0.3, 0.01), (-0.3, 0.0)])
+def test_of_several_crests_the_first_is_met(height: float, fall: float) -> None:
+    """Waves 1 m high and 8 m long, and rays along them that cut every crest, or every trough."""
+    x = np.arange(0.0, 80.0, 0.5)
+    crests = np.tile(0.5 * np.sin(2.0 * np.pi * x / 8.0), (9, 1))
+    waves = build_lattice(x0=0.0, y0=-2.0, spacing=0.5, level=0.0, coefficients=crests)
+    start = np.array([6.0 if height > 0.0 else 10.0, 0.0, height])
+    way = np.array([1.0, 0.0, fall]) / np.hypot(1.0, fall)
+    expected = first_crossing(waves, start, way, 60.0)
+    assert 2.0 < expected < 6.0
+    assert meets_surface(waves, *start, *way, 60.0)[0] == pytest.approx(expected, abs=1e-6)
 
 
 def test_agrees_with_embree_on_the_mesh(waves: WaveLattice) -> None:
