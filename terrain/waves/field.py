@@ -19,7 +19,7 @@ from terrain.waves.dispersion import angular_frequency, wavenumber
 from terrain.waves.energy import energy_of_bins, wavenumbers
 from terrain.waves.lattice import WaveLattice, build_lattice
 from terrain.waves.spectrum import WindSea
-from terrain.waves.swell import PlaneWaves, Swell
+from terrain.waves.swell import PlaneWaves, Swell, mean_products
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -103,20 +103,18 @@ class WaveField:
         >>> round(waves.significant_height, 2)
         0.61
         """
-        if wind_sea is not None:
-            require_room(wind_sea, depth=depth, patch=patch)
         nodes = 2 * next_fast_len(ceil(0.5 * NODES_PER_WAVE * patch / shortest))
         spacing, width = patch / nodes, 2.0 * pi / patch
-        kx, ky = wavenumbers(width=width, largest=2.0 * pi / shortest)
-        energy = np.zeros(kx.shape)
+        kx = ky = energy = np.empty(0)
         if wind_sea is not None:
+            require_room(wind_sea, depth=depth, patch=patch)
+            kx, ky = wavenumbers(width=width, largest=2.0 * pi / shortest)
             energy = energy_of_bins(
                 kx, ky, width, sea=wind_sea, towards=wind_from + pi, depth=depth
             )
         draws = chance.standard_normal((2, energy.size))
         response = spline_response(kx * spacing) * spline_response(ky * spacing)
         waves = (draws[0] + 1j * draws[1]) * np.sqrt(energy) / response
-        k = np.stack([kx, ky])
         return cls(
             spacing=spacing,
             nodes=nodes,
@@ -125,7 +123,7 @@ class WaveField:
             frequency=angular_frequency(np.hypot(kx, ky), depth=depth),
             swell=[one.plane_waves(chance, depth=depth) for one in swell],
             wind_variance=float(energy.sum()),
-            wind_slope_covariance=(k * energy) @ k.T,
+            wind_slope_covariance=mean_products(kx, ky, energy),
         )
 
     @property

@@ -43,8 +43,7 @@ class PlaneWaves:
 
     def slope_covariance(self) -> FloatArray:
         """Return the mean products (2, 2) of the slopes towards east and north [1]."""
-        k = np.stack([self.kx, self.ky])
-        return np.asarray(0.5 * (k * self.amplitude**2) @ k.T)
+        return mean_products(self.kx, self.ky, 0.5 * self.amplitude**2)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,6 +100,12 @@ class Swell:
             frequency=2.0 * pi * frequency,
             phase=2.0 * pi * draws[2],
         )
+
+
+def mean_products(kx: FloatArray, ky: FloatArray, variance: FloatArray) -> FloatArray:
+    """Return the mean products (2, 2) of the slopes of waves, by the variance of each [1]."""
+    xy = (kx * ky * variance).sum()
+    return np.array([[(kx**2 * variance).sum(), xy], [xy, (ky**2 * variance).sum()]])
 
 
 def _quantiles(value: FloatArray, density: FloatArray, parts: FloatArray) -> FloatArray:
