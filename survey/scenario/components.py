@@ -118,15 +118,10 @@ def water(scenario: Scenario) -> Water:
 
 
 def sea_surface(scenario: Scenario) -> SeaSurface:
-    """Return the sea surface that the wind makes."""
-    from terrain.sea_surface import SeaSurface
+    """Return the sea surface with its waves."""
+    from survey.scenario.surface_parts import build_sea
 
-    given = scenario.surface
-    return SeaSurface.from_wind(
-        level=given.water_level_m,
-        wind_speed=given.wind_speed_m_s,
-        wind_from=radians(given.wind_from_deg),
-    )
+    return build_sea(scenario.surface, seed=scenario.mission.seed)
 
 
 def sky(scenario: Scenario) -> Sky:

@@ -14,6 +14,7 @@ from survey.scenario.gate_rules import gate_holds_the_water
 from survey.scenario.seabed_sections import ChannelSeabed, SeabedSection
 from survey.scenario.sections import Camera, Mission, Receiver, Section
 from survey.scenario.sun import SUN_RULES
+from survey.scenario.surface_rules import SURFACE_RULES
 from survey.scenario.water_rules import WATER_RULES
 
 LARGEST_FRAME_BINS = 200_000_000
@@ -109,5 +110,6 @@ RULES: tuple[Callable[..., Iterator[Fault]], ...] = (
     files_exist,
     *DETECTOR_RULES,
     *SUN_RULES,
+    *SURFACE_RULES,
     *WATER_RULES,
 )

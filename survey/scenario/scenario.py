@@ -19,6 +19,7 @@ from survey.scenario.sun import (
     stated_irradiance_w_m2_nm,
     water_reflectance,
 )
+from survey.scenario.surface_sections import Surface
 from survey.scenario.times import gate_start_ns
 from survey.scenario.toml_text import to_toml
 from survey.scenario.validate import validate
@@ -53,7 +54,7 @@ class Scenario:
     receiver: sections.Receiver
     detector: sections.Detector
     water: sections.Water
-    surface: sections.Surface
+    surface: Surface
     seabed: SeabedSection
     sun: sections.Sun
     transport: sections.Transport
