@@ -268,7 +268,8 @@ def seabed(scenario: Scenario) -> Seabed:
         When the parts do not fit.
     """
     from survey.flight.trajectory import footprints
-    from survey.scenario.seabed_parts import bare_seabed, with_objects
+    from survey.scenario.seabed_objects import with_objects
+    from survey.scenario.seabed_parts import bare_seabed
     from terrain.file_faults import SeabedFileError
 
     frame = map_frame(scenario)

@@ -66,6 +66,7 @@ def one_pixel(depth: float, time: float, kind: PointClass) -> TrueTargets:
         time=np.full((1, 1), time),
         depth=np.full((1, 1), depth),
         classification=np.full((1, 1), kind, np.uint8),
+        substrate=np.zeros((1, 1), np.uint8),
     )
 
 

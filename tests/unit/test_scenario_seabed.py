@@ -119,6 +119,7 @@ def written_raster(folder: Path) -> Path:
         count=1,
         dtype="float64",
         crs="EPSG:25832",
+        nodata=-9999.0,
         transform=Affine(5.0, 0.0, 500000.0, 0.0, -5.0, 6001000.0),
     ) as raster:
         raster.write(elevation, 1)
