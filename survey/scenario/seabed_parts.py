@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from math import radians, tan
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +12,13 @@ from numpy.typing import NDArray
 from survey.scenario import seabed_sections as kinds
 from survey.scenario.components import flight_plan
 from survey.scenario.scenario import Scenario
+from survey.scenario.seabed_files import cover, imported, roughness
 from survey.scenario.seabed_materials import reef_material, stated_reflectance, substrate_of
 from terrain.map_frame import MapFrame
 from terrain.substrate import UNLABELLED
 
 if TYPE_CHECKING:
     from terrain.generators import Ground
-    from terrain.roughness import Roughness
     from terrain.seabed import Seabed
 
 FloatArray = NDArray[np.float64]
@@ -41,32 +40,13 @@ def bare_seabed(scenario: Scenario, frame: MapFrame, outlines: Sequence[FloatArr
     if isinstance(given, kinds.MadeSeabed):
         seabed = _made(given, _Site(scenario, frame, outlines))
     else:
-        seabed = _in_frame(_imported(given, scenario, corners), frame)
+        seabed = imported(scenario, corners, frame)
     seabed = seabed.painted(seabed.substrate == UNLABELLED, substrate_of(given, given))
-    return seabed if given.map is None else _mapped(seabed, given, scenario, corners)
-
-
-def _mapped(
-    seabed: Seabed, given: kinds.SeabedSection, scenario: Scenario, corners: FloatArray
-) -> Seabed:
-    """Return the seabed made of what its map shows about corners (n, 2) on the map [m]."""
-    from terrain.cover import reflectance_cover, substrate_cover
+    if given.map is None:
+        return seabed
     from terrain.cover_faces import covered
 
-    chart = given.map
-    assert chart is not None
-    path = scenario.folder / chart.file
-    window: dict[str, Any] = {
-        "epsg": scenario.mission.crs_epsg,
-        "band": chart.band,
-        "nodata": chart.nodata,
-        "outline": corners,
-        "margin": given.margin_m,
-    }
-    if not chart.classes:
-        return covered(seabed, reflectance_cover(path, **window))
-    classes = {part.value: substrate_of(part, given) for part in chart.classes}
-    return covered(seabed, substrate_cover(path, classes=classes, **window))
+    return covered(seabed, cover(given.map, scenario, corners))
 
 
 class _Site:
@@ -100,26 +80,13 @@ class _Site:
             width=2.0 * float(reach[1]),
             axis=axis,
             reflectance=stated_reflectance(given.model_dump()),
-            roughness=_roughness(given),
+            roughness=roughness(given),
         )
 
     def start_along(self, ground: Ground) -> float:
         """Return how far along the ground's axis the flight starts, from its centre [m]."""
         axis = np.array([np.sin(ground.axis), np.cos(ground.axis)])
         return float((self.start - np.array(ground.centre)) @ axis)
-
-
-def _roughness(given: kinds.RoughenedSeabed) -> Roughness | None:
-    from terrain.roughness import Roughness
-
-    if given.roughness_rms_m == 0.0:
-        return None
-    return Roughness(
-        rms=given.roughness_rms_m,
-        spectral_slope=given.roughness_spectral_slope,
-        longest_wavelength=given.roughness_longest_wave_m,
-        seed=given.roughness_seed,
-    )
 
 
 def _made(given: kinds.MadeSeabed, site: _Site) -> Seabed:
@@ -224,45 +191,3 @@ def _reef(given: kinds.ReefSeabed, site: _Site) -> Seabed:
         coral=substrate_of(reef_material(given), given),
         spacing=given.spacing_m,
     )
-
-
-def _imported(given: kinds.SeabedSection, scenario: Scenario, corners: FloatArray) -> Seabed:
-    """Return the seabed of a file, as far as it lies about corners (n, 2) on the map [m]."""
-    from terrain import importers
-
-    mission = scenario.mission
-    common: dict[str, Any] = {
-        "epsg": mission.crs_epsg,
-        "vertical_epsg": mission.vertical_epsg,
-        "reflectance": stated_reflectance(given.model_dump()),
-    }
-    nearby: dict[str, Any] = {"outline": corners, "margin": given.margin_m}
-    if isinstance(given, kinds.RasterSeabed):
-        return importers.from_raster(
-            scenario.folder / given.file,
-            band=given.band,
-            nodata=given.nodata,
-            spacing=given.spacing_m,
-            roughness=_roughness(given),
-            **nearby,
-            **common,
-        )
-    if isinstance(given, kinds.PointsSeabed):
-        return importers.from_las(
-            scenario.folder / given.file,
-            classes=given.classes,
-            cell=given.cell_m,
-            longest_edge=given.longest_edge_m,
-            **nearby,
-            **common,
-        )
-    assert isinstance(given, kinds.MeshSeabed)
-    offset = (given.offset_easting_m, given.offset_northing_m, given.offset_up_m)
-    return importers.from_mesh_file(scenario.folder / given.file, offset=offset, **common)
-
-
-def _in_frame(seabed: Seabed, frame: MapFrame) -> Seabed:
-    """Return the seabed in another local frame."""
-    mesh = seabed.mesh.copy()
-    mesh.apply_translation(seabed.map_frame.origin - frame.origin)
-    return replace(seabed, mesh=mesh, map_frame=frame)

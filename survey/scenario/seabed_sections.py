@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
+from pydantic_core import PydanticCustomError
 
 from survey.scenario.seabed_object_sections import Material, SeabedObject, Seed
 from survey.scenario.sections import Bearing, Count, Fraction, NotNegative, Positive, Section, Text
 
 PointClassCode = Annotated[int, Field(ge=0, le=255)]
 Slope = Annotated[float, Field(gt=0.0, le=80.0)]
-NoData = float | Literal["none"] | None
 Asymmetry = Annotated[float, Field(ge=1.0, le=20.0)]
 SpectralSlope = Annotated[float, Field(gt=0.0, le=6.0)]
+
+
+def _number_or_none(value: Any) -> Any:
+    if isinstance(value, str) and value != "none":
+        raise PydanticCustomError("nodata", 'neither a number nor "none"')
+    return value
+
+
+NoData = Annotated[float | Literal["none"] | None, BeforeValidator(_number_or_none)]
 
 
 class MapClass(Material):
