@@ -21,6 +21,7 @@ from terrain.foreign.limits import GIB, Limits
 ROOT = Path(__file__).resolve().parents[2]
 ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 GDAL = {"GDAL_CACHEMAX": "64", "CPL_VSIL_CURL_ALLOWED_EXTENSIONS": "{noext}"}
+OUT_OF_TIME = -int(getattr(signal, "SIGXCPU", 0))  # Windows has none
 LAST_WORDS = 4096  # [bytes]
 
 
@@ -98,7 +99,7 @@ def _ending(status: int | None, said: str, limits: Limits) -> str:
     """Return what a child's end says of the file."""
     if status is None:
         return f"could not be read within {limits.waiting_time} s. it may be damaged"
-    if status == -signal.SIGXCPU:
+    if status == OUT_OF_TIME:
         return (
             f"could not be read within {limits.processor_time} s of processor time. "
             "it may be damaged; otherwise cut or coarsen it"
