@@ -13,6 +13,7 @@ from survey.scenario import sections
 from survey.scenario.faults import Fault, ScenarioError
 from survey.scenario.motion_sections import Motion, Navigation
 from survey.scenario.rules import broken_rules
+from survey.scenario.seabed_materials import fill_reflectances
 from survey.scenario.seabed_sections import SeabedSection
 from survey.scenario.sun import (
     air_extinction_per_m,
@@ -130,6 +131,7 @@ class Scenario:
         _default(tables["receiver"], "gate_start_ns", gate_start_ns(self.receiver, self.flight))
         _default(tables["processing"], "echo_gate_ns", self.laser.pulse_width_ns)
         self._resolve_sun(tables["sun"])
+        fill_reflectances(tables["seabed"])
 
     def _resolve_sun(self, table: dict[str, Any]) -> None:
         """Fill in the numbers that no other key of the section says already."""
