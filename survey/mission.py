@@ -29,7 +29,7 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
     """Fly one flash: expected light, readings, ranges, points, and the truth beside them."""
     engine, water = mission.engine, mission.engine.water
     noise = mission.noise_at(frame.measured)
-    waveforms = engine.flash(pose=frame.pose, frame=frame.index)
+    waveforms = engine.flash(pose=frame.pose, frame=frame.index, time=frame.time)
     draws = chance(seed=engine.seed, purpose=COUNTS, frame=frame.index)
     readings = mission.detector.read(waveforms.total + noise.steady_light, draws)
 

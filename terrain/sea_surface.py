@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from terrain.waves import WaveField
+    from terrain.waves import WaveField, WaveLattice
 
 COX_MUNK_UPWIND_PER_SPEED = 3.16e-3
 COX_MUNK_CROSSWIND_CALM = 0.003
@@ -84,9 +85,25 @@ class SeaSurface:
         """Expected slope variance of the resolved wind waves along and across the wind [1]."""
         if self.waves is None:
             return 0.0, 0.0
+        return self.along_and_across(self.waves.wind_slope_covariance)
+
+    def sheet(
+        self, *, time: float, west: float, east: float, south: float, north: float
+    ) -> WaveLattice:
+        """Return the surface over a box [m] at a time [s]; level where there are no waves."""
+        if self.waves is not None:
+            return self.waves.lattice(
+                time=time, level=self.level, west=west, east=east, south=south, north=north
+            )
+        from terrain.waves.lattice import build_lattice
+
+        level = np.full((3, 3), self.level)
+        return build_lattice(x0=west, y0=south, spacing=1.0, level=self.level, coefficients=level)
+
+    def along_and_across(self, covariance: NDArray[np.float64]) -> tuple[float, float]:
+        """Return the variances along and across the wind of slopes towards east and north."""
         along = np.array([np.sin(self.wind_from), np.cos(self.wind_from)])
         across = np.array([along[1], -along[0]])
-        covariance = self.waves.wind_slope_covariance
         return float(along @ covariance @ along), float(across @ covariance @ across)
 
     @property

@@ -23,7 +23,7 @@ from survey.transport.glint import add_glint, add_mirror
 from survey.transport.launch import Optics
 from survey.transport.light_paths import Method
 from survey.transport.pixels import LEDGER_NAMES, Address, see_all
-from survey.transport.scene import Bounds, Scene, forward_medium, kernel_sea
+from survey.transport.scene import Bounds, Scene, drawn_sea, facet_sea, forward_medium
 from survey.transport.settings import TransportSettings
 from survey.transport.surface import NORMAL_QUANTILES
 from survey.transport.tally import Tally
@@ -118,7 +118,7 @@ class Engine:
         reach = int(np.ceil(PULSE_REACH * laser.pulse_sigma / width)) + 1
         self._coarse_taps = pulse_taps(sigma=laser.pulse_sigma, width=width, pad=reach)
 
-    def flash(self, *, pose: Pose, frame: int) -> Waveforms:
+    def flash(self, *, pose: Pose, frame: int, time: float = 0.0) -> Waveforms:
         """Return the expected photo-electrons of one flash.
 
         Parameters
@@ -127,9 +127,11 @@ class Engine:
             True pose of sensor and laser.
         frame : int
             Address of the flash: the same number draws the same walks.
+        time : float
+            When the flash is: the waves move [s].
         """
         optics = kernel_optics(camera=self.camera, receiver=self.receiver, pose=pose)
-        scene = self._scene(pose)
+        scene = self._scene(pose, time)
         settings, address = self.settings, Address(self.seed, frame)
         legs = FEWEST_LEGS + int(min(MOST_LEGS, 2.0 * scene.bounds.depth * self.water.scattering))
         tracks = draw_tracks(
@@ -192,11 +194,12 @@ class Engine:
 
     def _surface_echo(self, scene: Scene, optics: Optics) -> FloatArray:
         histogram = np.zeros((optics.rows * optics.columns, self._bins.number), np.float32)
-        add = add_mirror if self.surface.slope_variance == 0.0 else add_glint
+        mirror = self.surface.slope_variance == 0.0 and not scene.wavy
+        add = add_mirror if mirror else add_glint
         add(histogram, self._bins, scene, optics, self.water.refractive_index, self.photo_electrons)
         return blurred(histogram, self._taps)
 
-    def _scene(self, pose: Pose) -> Scene:
+    def _scene(self, pose: Pose, time: float) -> Scene:
         """Return the scene of a flash: the box around the lit water and the seabed in it."""
         outline, level = footprint(self.camera, pose, self.surface.level), self.surface.level
         in_gate = 0.5 * self.receiver.bins * self.receiver.bin_width * self._medium.speed
@@ -204,11 +207,15 @@ class Engine:
         margin = deepest + self.receiver.aperture_radius
         west, south = outline.min(axis=0) - margin
         east, north = outline.max(axis=0) + margin
+        waves = self.surface.sheet(time=time, west=west, east=east, south=south, north=north)
         lowest, highest, top = elevations_within(
             self._grid, west=west, east=east, south=south, north=north
         )
         return Scene(
-            sea=kernel_sea(self.surface),
+            sea=facet_sea(self.surface),
+            drawn=drawn_sea(self.surface),
+            wavy=self.surface.waves is not None,
+            waves=waves,
             grid=self._grid,
             reflectance=self._reflectance,
             bounds=Bounds(

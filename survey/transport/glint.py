@@ -11,7 +11,8 @@ from scipy.constants import speed_of_light
 from survey.optics.interface import fresnel_reflectance
 from survey.transport.launch import Optics, direction_of, pixel_at
 from survey.transport.scene import Scene
-from survey.transport.surface import glint_per_steradian
+from survey.transport.sheet import first_water
+from survey.transport.surface import return_per_steradian
 from survey.transport.tally import TimeBins, deposit_in
 from terrain.kernels import leaf_kernel
 from terrain.raycast import first_hit
@@ -43,11 +44,11 @@ def add_glint(
         x, y, z = optics.position
         if dz >= 0.0:
             continue
-        length = (scene.sea.level - z) / dz
+        length, slope_x, slope_y = first_water(scene, x, y, z, dx, dy, dz)
         _, face = first_hit(scene.grid, x, y, z, dx, dy, dz, length)
-        if face >= 0:
+        if face >= 0 or length == math.inf:
             continue
-        returned = glint_per_steradian(scene.sea, index, dx, dy, dz)
+        returned = return_per_steradian(scene.sea, index, dx, dy, dz, slope_x, slope_y)
         returned *= share * area * cosine / (length * length)
         pixel = pixel_at(optics, forward, right)
         deposit_in(histogram, pixel, bins, 2.0 * length / speed_of_light, returned)

@@ -22,12 +22,21 @@ from survey.optics.interface import fresnel_reflectance, reflected
 from survey.transport.beam import Ray, light_on_water, ray_to
 from survey.transport.launch import Optics
 from survey.transport.random import uniform
-from survey.transport.scene import Medium, Scene
-from survey.transport.surface import drawn_normal, enter_water, facing_from_below
+from survey.transport.scene import FOLLOWED, Medium, Scene
+from survey.transport.sheet import crest_or_trough, through_waves
+from survey.transport.surface import (
+    drawn_normal,
+    enter_water,
+    facing_from_below,
+    passing,
+    slope_density,
+    tilted,
+)
 from survey.transport.tally import BOTTOM, COLUMN, Tally, deposit
 from survey.transport.tracks import Course, Tracks, axes_around
 from terrain.kernels import inlined_kernel
 from terrain.raycast import first_hit
+from terrain.waves.lattice import elevation_and_slopes
 
 FLATTEST = 0.01
 GAP = 1e-3
@@ -59,6 +68,14 @@ class Sight(NamedTuple):
     importance: float
 
 
+class Facet(NamedTuple):
+    """Where on waves a track is laid through: its slopes, and the ``density`` it was drawn by."""
+
+    slope_x: float
+    slope_y: float
+    density: float
+
+
 class Place(NamedTuple):
     """Where a walk touches the bottom: ``gain`` is its importance times reflectance over pi."""
 
@@ -86,7 +103,9 @@ def light_sent(
     north: float,
     slope_x: float,
     slope_y: float,
-) -> tuple[float, float, float]:
+    facet: Facet,
+    deepening: float,
+) -> tuple[float, float, float, float]:
     """Return what the laser sends along a track to a place [1/m2], the way in air, how much deeper.
 
     The track goes (``east``, ``north``) sideways to the place's ``depth``. Where it enters is where
@@ -95,6 +114,10 @@ def light_sent(
     tilts the track, which is then somewhat deeper [m] and, on what goes through the place by
     (``slope_x``, ``slope_y``) per metre of depth, thinned further. Departure: to first order, and
     as if neighbours parted alike in all directions.
+
+    Last comes how high above mean level [m] the wave stands where the track enters. It slides there
+    along what goes through the place: the light slides over a fixed place, which then is deeper
+    under the wave (``deepening`` 1), or a place of fixed depth over its light (0).
     """
     spread_r, spread_t = 1.0 + depth * ray.radial, 1.0 + depth * ray.tangential
     thinned = 1.0 / (spread_r * spread_t)
@@ -104,25 +127,33 @@ def light_sent(
     px, py = x - flat_x - stray_x * shrink, y - flat_y - stray_y * shrink
     lean = 0.5 * (ray.radial + ray.tangential) * shrink
     thinned *= min(2.0, max(0.0, 1.0 - lean * (stray_x * slope_x + stray_y * slope_y)))
-    level = scene.sea.level
+    level, lift = scene.sea.level, 0.0
+    if scene.wavy:
+        lift, density = through_waves(scene, px, py, slope_x, slope_y, facet.slope_x, facet.slope_y)
+        px, py, level = px - lift * slope_x, py - lift * slope_y, level + lift
+        deeper_by = deepening * lift
+        thinned *= density / facet.density * spread_r * spread_t
+        thinned /= (spread_r + deeper_by * ray.radial) * (spread_t + deeper_by * ray.tangential)
     light = light_on_water(optics, level, px, py, sight.pixel, method.isolated)
     if light == 0.0:
-        return 0.0, 0.0, 0.0
+        return 0.0, 0.0, 0.0, lift
     dx, dy, dz = px - optics.position[0], py - optics.position[1], level - optics.position[2]
     in_air = math.sqrt(dx * dx + dy * dy + dz * dz)
-    if scene.bounds.highest > level:
+    if scene.bounds.highest > scene.waves.lowest:
         _, face = first_hit(
             scene.grid, optics.position[0], optics.position[1], optics.position[2],
             dx / in_air, dy / in_air, dz / in_air, in_air,
         )  # fmt: skip
         if face >= 0:
-            return 0.0, 0.0, 0.0
-    return light * thinned, in_air, lean * (stray_x * stray_x + stray_y * stray_y)
+            return 0.0, 0.0, 0.0, lift
+    return light * thinned, in_air, lean * (stray_x * stray_x + stray_y * stray_y), lift
 
 
 @inlined_kernel
-def is_open(scene: Scene, tally: Tally, legs: int, last: float, x: float, y: float) -> bool:
-    """Tell whether a track, begun at (x, y), meets no bottom on its legs.
+def is_open(
+    scene: Scene, tally: Tally, legs: int, last: float, x: float, y: float, level: float
+) -> bool:
+    """Tell whether a track, begun at (x, y, level), meets no bottom on its legs.
 
     Of the last leg only the length ``last`` counts, but for a last millimetre.
     """
@@ -131,7 +162,7 @@ def is_open(scene: Scene, tally: Tally, legs: int, last: float, x: float, y: flo
         length = leg[6] if i < legs - 1 else last - GAP
         if length <= 0.0:
             continue
-        z = scene.sea.level - leg[2]
+        z = level - leg[2]
         if min(z, z + leg[5] * length) > scene.bounds.highest:
             continue
         _, face = first_hit(scene.grid, x + leg[0], y + leg[1], z, leg[3], leg[4], leg[5], length)
@@ -154,21 +185,32 @@ def add_bottom(
     along: float,
     path: float,
     strength: float,
+    facet: Facet,
 ) -> None:
-    """Light a place of the bottom by the track whose last leg crosses its depth at ``along``."""
+    """Light a place of the bottom by the track whose last leg crosses its depth at ``along``.
+
+    Its depth under mean level; under a wave the leg crosses it elsewhere, or not at all.
+    """
     leg = tally.down[legs - 1]
     dx, dy, dz = leg[3], leg[4], leg[5]
     facing = -(dx * place.nx + dy * place.ny + dz * place.nz)
     if facing <= 0.0 or abs(dz) < FLATTEST:
         return
     east, north = leg[0] + dx * along, leg[1] + dy * along
-    light, in_air, deeper = light_sent(
+    light, in_air, deeper, lift = light_sent(
         scene, optics, method, sight, ray, place.x, place.y, scene.sea.level - place.z,
-        east, north, dx / -dz, dy / -dz,
+        east, north, dx / -dz, dy / -dz, facet, 1.0,
     )  # fmt: skip
     if light == 0.0:
         return
-    if not is_open(scene, tally, legs, along, place.x - east, place.y - north):
+    if scene.wavy:
+        further = lift / -dz
+        along, east, north = along + further, east + dx * further, north + dy * further
+        if not 0.0 <= along < leg[6]:
+            return
+    if not is_open(
+        scene, tally, legs, along, place.x - east, place.y - north, scene.sea.level + lift
+    ):
         return
     path += along - min(deeper / -dz, along)
     whole = path + place.path
@@ -193,6 +235,7 @@ def add_column(
     path: float,
     strength: float,
     deepest: float,
+    facet: Facet,
 ) -> None:
     """Let a point of a track scatter into the walk from the pixel, where that has its depth."""
     leg = tally.down[legs - 1]
@@ -200,24 +243,30 @@ def add_column(
     depth = leg[2] - dz * along
     east, north = leg[0] + dx * along, leg[1] + dy * along
     z = scene.sea.level - depth
-    table = method.cosine_table
+    table, slack = method.cosine_table, crest_or_trough(scene)
     for i in range(tally.noted[0]):
         back = tally.back[i]
         to = (z - back[2]) * back[8]
-        if not 0.0 <= to < back[6]:
+        if not -slack * abs(back[8]) <= to < back[6] + slack * abs(back[8]):
             continue
         cosine = -(dx * back[3] + dy * back[4] + dz * back[5])
         if cosine >= method.split_cosine:
             continue
         x, y = back[0] + back[3] * to, back[1] + back[4] * to
-        light, in_air, deeper = light_sent(
+        light, in_air, deeper, lift = light_sent(
             scene, optics, method, sight, ray, x, y, depth, east, north,
-            -back[3] * back[8], -back[4] * back[8],
+            -back[3] * back[8], -back[4] * back[8], facet, 0.0,
         )  # fmt: skip
         if light == 0.0:
             continue
-        if scene.sea.level - deepest < scene.bounds.highest and not is_open(
-            scene, tally, legs, along, x - east, y - north
+        if scene.wavy:
+            further = lift * back[8]
+            to, x, y = to + further, x + back[3] * further, y + back[4] * further
+            if not 0.0 <= to < back[6]:
+                continue
+        level = scene.sea.level + lift
+        if level - deepest < scene.bounds.highest and not is_open(
+            scene, tally, legs, along, x - east, y - north, level
         ):
             continue
         at = max(0.0, 0.5 * (cosine + 1.0) * (table.shape[0] - 1))
@@ -258,20 +307,27 @@ def send_light(
     dx, dy = ray.x - optics.position[0], ray.y - optics.position[1]
     dz = sea.level - optics.position[2]
     norm = 1.0 / math.sqrt(dx * dx + dy * dy + dz * dz)
-    mx, my, mz = drawn_normal(sea, method.quantiles, state)
+    mx, my, mz = drawn_normal(scene.drawn, method.quantiles, state)
+    facet = Facet(0.0, 0.0, 1.0)
+    if scene.wavy:
+        _, wave_x, wave_y = elevation_and_slopes(scene.waves, ray.x, ray.y)
+        density = slope_density(scene.drawn, -mx / mz, -my / mz)
+        mx, my, mz = tilted(mx, my, mz, FOLLOWED * wave_x, FOLLOWED * wave_y)
+        facet = Facet(-mx / mz, -my / mz, density)
     dx, dy, dz, caught, reflectance = enter_water(
         medium.refractive_index, dx * norm, dy * norm, dz * norm, mx, my, mz
     )
     if caught <= 0.0 or dz >= 0.0:
         return
-    strength = weight * caught * (1.0 - reflectance)
+    strength = weight * caught * (1.0 - reflectance) * passing(sea)
     ax, ay, az, bx, by, bz = axes_around(dx, dy, dz, method.circle, state)
     cx, cy, cz = dx, dy, dz
     which, k, legs = 2 * sight.batch, 0, 0
     x = y = depth = path = deepest = 0.0
-    height = optics.position[2] - sea.level
+    height = optics.position[2] - scene.waves.highest
     limit = (scene.bounds.latest - sight.time - height / speed_of_light) * medium.speed
-    floor = sea.level - scene.bounds.lowest
+    floor = scene.waves.highest - scene.bounds.lowest
+    over, under = scene.waves.highest - sea.level, sea.level - scene.waves.lowest
     sample = method.spacing * uniform(state)
     beyond = place.gain == 0.0
     track, optical = way.track, way.optical
@@ -295,17 +351,21 @@ def send_light(
                 along = sample - path
                 add_column(
                     scene, medium, optics, method, tally, sight, ray, legs, along, path, strength,
-                    max(deepest, depth - dz * along),
+                    max(deepest, depth - dz * along), facet,
                 )  # fmt: skip
                 sample += method.spacing
-        if place.gain > 0.0 and (depth < target) != (depth + sinking < target):
+        at_place = (depth < target) != (depth + sinking < target)
+        if scene.wavy:
+            shallow, deep = min(depth, depth + sinking), max(depth, depth + sinking)
+            at_place = shallow < target + over and deep > target - under
+        if place.gain > 0.0 and at_place:
             add_bottom(
                 scene, medium, optics, method, tally, sight, place, ray, legs,
-                (target - depth) / -dz, path, strength,
+                (target - depth) / -dz, path, strength, facet,
             )  # fmt: skip
             if target > floor - GAP:
                 return
-            if not beyond:
+            if not beyond and depth + sinking >= target + over:
                 beyond = True
                 if uniform(state) >= CHANCE_BEYOND:
                     return
@@ -317,8 +377,8 @@ def send_light(
             return
         if surfaced:
             depth = 0.0
-            mx, my, mz = drawn_normal(sea, method.quantiles, state)
-            mx, my, mz = facing_from_below(dx, dy, dz, mx, my, mz)
+            mx, my, mz = drawn_normal(scene.drawn, method.quantiles, state)
+            mx, my, mz = facing_from_below(dx, dy, dz, mx, my, mz, 0.0, 0.0)
             cosine = dx * mx + dy * my + dz * mz
             if uniform(state) >= fresnel_reflectance(cosine, medium.refractive_index):
                 return

@@ -24,7 +24,14 @@ from survey.transport.light_paths import (
 )
 from survey.transport.random import PIXELS, start_stream, uniform
 from survey.transport.scene import Medium, Scene
-from survey.transport.surface import drawn_normal, enter_water, facing_from_below
+from survey.transport.sheet import first_water, sea_under, water_above
+from survey.transport.surface import (
+    drawn_normal,
+    enter_water,
+    facing_from_below,
+    passing,
+    tilted,
+)
 from survey.transport.tally import BOTTOM, Tally, add_up, clear, deposit, note_leg, tell_variance
 from survey.transport.tracks import Course, Tracks, axes_around, chosen, course
 from terrain.kernels import fused_kernel, inlined_kernel, leaf_kernel
@@ -115,9 +122,10 @@ def walk_back(
         dy = row[0] * ay + row[1] * by + row[2] * cy
         dz = row[0] * az + row[1] * bz + row[2] * cz
         length = min(optical / medium.scattering, limit - path)
-        surfaced = dz > 0.0 and sea.level - z < dz * length
+        to_air, slope_x, slope_y = water_above(scene, x, y, z, dx, dy, dz, length)
+        surfaced = to_air < math.inf
         if surfaced:
-            length = (sea.level - z) / dz
+            length = to_air
         face = -1
         if min(z, z + dz * length) <= scene.bounds.highest:
             to_bottom, face = first_hit(scene.grid, x, y, z, dx, dy, dz, length)
@@ -141,7 +149,10 @@ def walk_back(
         if surfaced:
             z = sea.level
             mx, my, mz = drawn_normal(sea, method.quantiles, state)
-            mx, my, mz = facing_from_below(dx, dy, dz, mx, my, mz)
+            if scene.wavy:
+                z = sea_under(scene, x, y)
+                mx, my, mz = tilted(mx, my, mz, slope_x, slope_y)
+            mx, my, mz = facing_from_below(dx, dy, dz, mx, my, mz, slope_x, slope_y)
             cosine = dx * mx + dy * my + dz * mz
             if uniform(state) >= fresnel_reflectance(cosine, medium.refractive_index):
                 fate = ESCAPED
@@ -204,7 +215,7 @@ def see_bottom(
     state: NDArray[np.uint64],
 ) -> None:
     """Walk back from under the surface, from touch to touch of the bottom, and light it all."""
-    height = optics.position[2] - scene.sea.level
+    height = optics.position[2] - scene.waves.highest
     limit = (scene.bounds.latest - sight.time - height / speed_of_light) * medium.speed
     tally.noted[0], entered, which = 0, start.weight, 2 * sight.batch
     entry_weight, touches = back.weight, 0
@@ -290,10 +301,9 @@ def see(
         return
     solid = 4.0 * optics.half_forward * optics.half_right / (optics.rows * optics.columns)
     importance = math.pi * optics.aperture_radius**2 * solid * cosine**4 / walks
-    level = scene.sea.level
-    length = (level - z) / dz
+    length, slope_x, slope_y = first_water(scene, x, y, z, dx, dy, dz)
     to_land, face = math.inf, -1
-    if scene.bounds.highest > level:
+    if scene.bounds.highest > scene.waves.lowest:
         to_land, face = first_hit(scene.grid, x, y, z, dx, dy, dz, length)
     if face >= 0:
         x, y, z = x + dx * to_land, y + dy * to_land, z + dz * to_land
@@ -302,12 +312,21 @@ def see(
         see_land(scene, optics, method, tally, sight, touch)
         ledger[REFLECTED] += 1.0
         return
-    x, y = x + dx * length, y + dy * length
+    if length == math.inf:
+        ledger[REFLECTED] += 1.0
+        return
+    x, y, level = x + dx * length, y + dy * length, scene.sea.level
     mx, my, mz = drawn_normal(scene.sea, method.quantiles, state)
+    onto = 1.0
+    if scene.wavy:
+        level = sea_under(scene, x, y)
+        onto = -dz / (dx * slope_x + dy * slope_y - dz)
+        mx, my, mz = tilted(mx, my, mz, slope_x, slope_y)
     dx, dy, dz, caught, reflectance = enter_water(medium.refractive_index, dx, dy, dz, mx, my, mz)
+    caught *= onto
     ledger[FACETS] += caught - 1.0
-    ledger[REFLECTED] += caught * reflectance
-    weight = caught * (1.0 - reflectance)
+    weight = caught * (1.0 - reflectance) * passing(scene.sea)
+    ledger[REFLECTED] += caught - weight
     if weight <= 0.0 or dz >= 0.0:
         ledger[ESCAPED] += weight
         return

@@ -11,8 +11,13 @@ from scipy.constants import speed_of_light
 from survey.optics.water import Water
 from terrain.raycast import SeabedGrid
 from terrain.sea_surface import SeaSurface
+from terrain.waves.lattice import WaveLattice
 
 FloatArray = NDArray[np.float64]
+
+LEAST_DEVIATION = 0.01
+FOLLOWED, UNFOLLOWED = 0.7, 0.55
+"""Share of a wave's slope that drawn facets follow, and of its variance that they spread by."""
 
 
 class Medium(NamedTuple):
@@ -27,13 +32,14 @@ class Medium(NamedTuple):
 
 
 class Sea(NamedTuple):
-    """Mean level and standard deviation of the facet slopes."""
+    """Mean level, standard deviation of the facet slopes on it, and what part is white."""
 
     level: float
     upwind_deviation: float
     crosswind_deviation: float
     wind_east: float
     wind_north: float
+    white: float
 
 
 class Bounds(NamedTuple):
@@ -50,9 +56,16 @@ class Bounds(NamedTuple):
 
 
 class Scene(NamedTuple):
-    """Everything that stands still during one flash."""
+    """Everything that stands still during one flash.
+
+    The facets of ``sea`` stand on ``waves``: a level sheet, and not ``wavy``, where none are
+    resolved. ``drawn`` has the facets that tracks of light are laid through: `drawn_sea`.
+    """
 
     sea: Sea
+    drawn: Sea
+    wavy: bool
+    waves: WaveLattice
     grid: SeabedGrid
     reflectance: FloatArray
     bounds: Bounds
@@ -90,11 +103,42 @@ def restricted_medium(water: Water, *, split_angle: float) -> Medium:
 
 
 def kernel_sea(surface: SeaSurface) -> Sea:
-    """Return a sea surface as kernels take it."""
+    """Return a sea surface as kernels take it, all its slopes on the mean level."""
+    return _sea(surface, surface.upwind_slope_variance, surface.crosswind_slope_variance)
+
+
+def facet_sea(surface: SeaSurface) -> Sea:
+    """Return the facets on the resolved waves.
+
+    Departure: on waves they have a r.m.s. slope of at least `LEAST_DEVIATION`, so that every place
+    can be lit through each of them.
+    """
+    if surface.waves is None:
+        return kernel_sea(surface)
+    return _sea(surface, *(max(v, LEAST_DEVIATION**2) for v in surface.remaining_slope_variance))
+
+
+def drawn_sea(surface: SeaSurface) -> Sea:
+    """Return the facets that tracks of light are laid through, about `FOLLOWED` of the wave there.
+
+    Their slopes spread wider than the facets', since the track will enter elsewhere on the wave.
+    """
+    if surface.waves is None:
+        return kernel_sea(surface)
+    facets = facet_sea(surface)
+    along, across = surface.along_and_across(surface.waves.slope_covariance)
+    return facets._replace(
+        upwind_deviation=(facets.upwind_deviation**2 + UNFOLLOWED * along) ** 0.5,
+        crosswind_deviation=(facets.crosswind_deviation**2 + UNFOLLOWED * across) ** 0.5,
+    )
+
+
+def _sea(surface: SeaSurface, upwind_variance: float, crosswind_variance: float) -> Sea:
     return Sea(
         level=surface.level,
-        upwind_deviation=surface.upwind_slope_variance**0.5,
-        crosswind_deviation=surface.crosswind_slope_variance**0.5,
+        upwind_deviation=upwind_variance**0.5,
+        crosswind_deviation=crosswind_variance**0.5,
         wind_east=float(np.sin(surface.wind_from)),
         wind_north=float(np.cos(surface.wind_from)),
+        white=surface.whitecap_coverage,
     )

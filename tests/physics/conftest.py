@@ -34,6 +34,7 @@ def make_engine(
     index: float = 1.33,
     group_index: float | None = None,
     wind_speed: float = 5.0,
+    surface: SeaSurface | None = None,
     pulse_fwhm: float = 10e-9,
     pulse_energy: float = 1.0,
     aperture_radius: float = 0.005,
@@ -58,7 +59,9 @@ def make_engine(
         seabed=slope(ground=ground, depth=depth * scale, gradient=gradient)
         if seabed is None
         else seabed,
-        surface=SeaSurface.from_wind(level=0.0, wind_speed=wind_speed, wind_from=0.0),
+        surface=SeaSurface.from_wind(level=0.0, wind_speed=wind_speed, wind_from=0.0)
+        if surface is None
+        else surface,
         water=petzold_water(
             water,
             refractive_index=index,
