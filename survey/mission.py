@@ -50,6 +50,7 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
         water=water,
         pose=frame.pose,
         rays=pixel_rays(camera=mission.camera, pose=frame.pose),
+        time=frame.time,
     )
     on_surface = surface_points(line=line, first=first, frame=frame, targets=targets)
     on_bottom = bottom_points(

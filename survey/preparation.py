@@ -26,6 +26,7 @@ from survey.sensor.detector import Detector, Readings
 from survey.transport.engine import Engine
 from survey.transport.waveforms import pulse_taps
 from terrain.generators import Ground, plane
+from terrain.sea_surface import SeaSurface
 from terrain.seabed import Seabed
 
 FloatArray = NDArray[np.float64]
@@ -87,7 +88,7 @@ def prepare(scenario: Scenario) -> Mission:
         camera=camera,
         detector=components.detector(scenario),
         seabed=seabed,
-        engine=_engine(scenario, seabed),
+        engine=_engine(scenario, seabed, surface),
         posed_noise=posed_noise(scenario, frames[0]),
         products=ProductSettings(
             title=scenario.mission.title,
@@ -110,9 +111,11 @@ def posed_noise(scenario: Scenario, frame: Frame) -> PosedNoise:
     """Return what a flash reads over water without a bottom, and the thresholds above it.
 
     The expected column is that of the scenario's water, from flashes of its own over a bottom that
-    nothing can reach; a survey would know it from its deep water.
+    nothing can reach; a survey would know it from its deep water. Of resolved waves it knows the
+    slopes' statistics alone: all of them stand on the mean level.
     """
-    engine = _engine(scenario, _unreachable_bottom(scenario))
+    level_sea = replace(components.sea_surface(scenario), waves=None)
+    engine = _engine(scenario, _unreachable_bottom(scenario), level_sea)
     pose = Pose(
         position=np.array([0.0, 0.0, frame.measured.position[2]]),
         roll=0.0,
@@ -175,12 +178,12 @@ def _mean_flash(engine: Engine, pose: Pose) -> tuple[FloatArray, FloatArray, Flo
     return light, surface, variance
 
 
-def _engine(scenario: Scenario, seabed: Seabed) -> Engine:
+def _engine(scenario: Scenario, seabed: Seabed, surface: SeaSurface) -> Engine:
     receiver = components.receiver(scenario)
     efficiency = components.detector(scenario).photo_electrons_per_photon
     return Engine(
         seabed=seabed,
-        surface=components.sea_surface(scenario),
+        surface=surface,
         water=components.water(scenario),
         laser=components.laser(scenario),
         camera=components.camera(scenario),

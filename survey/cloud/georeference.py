@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.constants import speed_of_light
 
 from survey.flight.pose import Pose
 from survey.sensor.camera import Camera
+
+if TYPE_CHECKING:
+    from terrain.waves import WaveLattice
 
 FloatArray = NDArray[np.float64]
 
@@ -69,6 +74,29 @@ def bend_at_surface(
     direction = rays / refractive_index
     direction[..., 2] = -np.sqrt(1.0 - np.sum(direction[..., :2] ** 2, axis=-1))
     return WaterPath(entry=entry, air_time=2.0 * length / speed_of_light, direction=direction)
+
+
+def bend_at_waves(
+    *, position: FloatArray, rays: FloatArray, waves: WaveLattice, refractive_index: float
+) -> WaterPath:
+    """Refract downward rays (..., 3) from a position (3,) [m] where they meet resolved waves.
+
+    By Snell's law at the slope of the waves there, without the roughness on them.
+    """
+    from terrain.waves.lattice import meetings
+
+    length, slopes = meetings(waves, position, rays.reshape(-1, 3))
+    normal = np.column_stack([-slopes, np.ones(len(slopes))]).reshape(rays.shape)
+    normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+    length = length.reshape(rays.shape[:-1])
+    cosine = -np.sum(rays * normal, axis=-1)
+    below = np.sqrt(1.0 - (1.0 - cosine**2) / refractive_index**2)
+    return WaterPath(
+        entry=position + rays * length[..., None],
+        air_time=2.0 * length / speed_of_light,
+        direction=rays / refractive_index
+        + (cosine / refractive_index - below)[..., None] * normal,
+    )
 
 
 def place_in_air(*, position: FloatArray, rays: FloatArray, time: FloatArray) -> FloatArray:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.georeference import bend_at_surface
+from survey.cloud.georeference import WaterPath, bend_at_surface, bend_at_waves
 from survey.cloud.points import Outcome, PointClass
 from survey.flight.pose import Pose
 from survey.optics.water import Water
@@ -23,11 +23,12 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 FALSE_BOTTOM_ERROR = 1.0
+ROOM_FOR_WAVES = 10.0  # [m]
 
 
 @dataclass(frozen=True, kw_only=True)
 class TrueTargets:
-    """Where the unscattered rays of the pixel centres end, under a level sea.
+    """Where the unscattered rays of the pixel centres end, through the waves that are resolved.
 
     Parameters
     ----------
@@ -38,7 +39,7 @@ class TrueTargets:
     time : array (rows, columns)
         Two-way time to `position` [s].
     depth : array (rows, columns)
-        Water above `position`, negative on land [m].
+        Of `position` under mean level, negative on land [m].
     classification : array (rows, columns)
         `PointClass`: ground, bathymetric point or submerged object.
     substrate : array (rows, columns)
@@ -54,13 +55,17 @@ class TrueTargets:
 
 
 def true_targets(
-    *, seabed: Seabed, surface: SeaSurface, water: Water, pose: Pose, rays: FloatArray
+    *,
+    seabed: Seabed,
+    surface: SeaSurface,
+    water: Water,
+    pose: Pose,
+    rays: FloatArray,
+    time: float = 0.0,
 ) -> TrueTargets:
-    """Trace rays (rows, columns, 3) from the sensor through the level sea to the seabed."""
+    """Trace rays (rows, columns, 3) from the sensor through the sea of a time [s] to the seabed."""
     position = pose.position
-    path = bend_at_surface(
-        position=position, rays=rays, level=surface.level, refractive_index=water.refractive_index
-    )
+    path = _bent(surface, position, rays, time, water.refractive_index)
     air_length = np.linalg.norm(path.entry - position, axis=-1)
     land_length, land_face = _cast(seabed, np.broadcast_to(position, rays.shape), rays, air_length)
     dry = land_face >= 0
@@ -83,6 +88,20 @@ def true_targets(
         classification=np.where(dry, PointClass.GROUND, wet_class).astype(np.uint8),
         substrate=substrate.astype(np.uint8),
     )
+
+
+def _bent(
+    surface: SeaSurface, position: FloatArray, rays: FloatArray, time: float, index: float
+) -> WaterPath:
+    level = bend_at_surface(
+        position=position, rays=rays, level=surface.level, refractive_index=index
+    )
+    if surface.waves is None:
+        return level
+    west, south = level.entry[..., :2].min(axis=(0, 1)) - ROOM_FOR_WAVES
+    east, north = level.entry[..., :2].max(axis=(0, 1)) + ROOM_FOR_WAVES
+    waves = surface.sheet(time=time, west=west, east=east, south=south, north=north)
+    return bend_at_waves(position=position, rays=rays, waves=waves, refractive_index=index)
 
 
 def outcomes(

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from terrain.kernels import inlined_kernel, leaf_kernel
+from terrain.kernels import inlined_kernel, kernel, leaf_kernel
 
 CLOSE = 1e-3  # [m]: the step that starts from there leaves 1e-7 m
 MOST_STEPS = 60
@@ -124,6 +124,23 @@ def meets_surface(
             return t, slope_x, slope_y
         return np.inf, 0.0, 0.0
     return _search(waves, ox, oy, oz, dx, dy, dz, t_max, 1.0 / (waves.per_cell * across))
+
+
+@kernel
+def meetings(
+    waves: WaveLattice, position: NDArray[np.float64], rays: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return how far unit rays (n, 3) go down to the surface [m], and the slopes (n, 2) there.
+
+    From a position (3,) above the crests.
+    """
+    length, slopes = np.empty(len(rays)), np.empty((len(rays), 2))
+    x, y, z = position[0], position[1], position[2]
+    for i in range(len(rays)):
+        dx, dy, dz = rays[i, 0], rays[i, 1], rays[i, 2]
+        reach = (waves.lowest - z) / dz + 1.0
+        length[i], slopes[i, 0], slopes[i, 1] = meets_surface(waves, x, y, z, dx, dy, dz, reach)
+    return length, slopes
 
 
 @leaf_kernel
