@@ -10,7 +10,7 @@ import time
 import tracemalloc
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -36,18 +36,27 @@ class Case:
     """A water, a depth, and the work that gives about 5 % error a pixel.
 
     Where the bottom takes many walks, fewer points light the column: its error is then that of the
-    other cases.
+    other cases. ``surface`` holds further keys of that section.
     """
 
     water: str
     depth_m: float
     walks_per_pixel: int
     column_spacing: float = 1.0
+    surface: dict[str, Any] = field(default_factory=dict)
 
 
+WIND_WAVES = {
+    "wind_speed_m_s": 5.0,
+    "whitecaps": True,
+    "waves": {"spectrum": "jonswap", "fetch_km": 20.0},
+}
 CASES = {
     "clear 20 m": Case(water="clear", depth_m=20.0, walks_per_pixel=36),
     "coastal 10 m": Case(water="coastal", depth_m=10.0, walks_per_pixel=32),
+    "coastal 10 m, waves": Case(
+        water="coastal", depth_m=10.0, walks_per_pixel=48, surface=WIND_WAVES
+    ),
     "coastal 20 m": Case(water="coastal", depth_m=20.0, walks_per_pixel=96, column_spacing=1.5),
     "harbor 4 m": Case(water="harbor", depth_m=4.0, walks_per_pixel=92),
 }
@@ -167,7 +176,7 @@ def bench_scenario(case: Case, **values: Any) -> Scenario:
             "dark_count_rate_hz": 1.0e4,
         },
         "water": {"type": case.water},
-        "surface": {"water_level_m": 0.0},
+        "surface": {"water_level_m": 0.0} | case.surface,
         "seabed": {
             "kind": "plane",
             "depth_m": case.depth_m,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -94,8 +93,7 @@ def bend_at_waves(
     return WaterPath(
         entry=position + rays * length[..., None],
         air_time=2.0 * length / speed_of_light,
-        direction=rays / refractive_index
-        + (cosine / refractive_index - below)[..., None] * normal,
+        direction=rays / refractive_index + (cosine / refractive_index - below)[..., None] * normal,
     )
 
 

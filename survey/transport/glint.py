@@ -18,6 +18,7 @@ from terrain.kernels import leaf_kernel
 from terrain.raycast import first_hit
 
 SAMPLES_ACROSS_PIXEL = 4
+SAMPLES_ON_WAVES = 7  # 0.5 % error a pixel; 4 would fall into step with the sheet's nodes
 MIRROR_SAMPLES = 4096
 
 
@@ -31,7 +32,7 @@ def add_glint(
     photons: float,
 ) -> None:
     """Add the return of a rough surface to every pixel, on a grid of directions in each."""
-    n = SAMPLES_ACROSS_PIXEL
+    n = SAMPLES_ON_WAVES if scene.wavy else SAMPLES_ACROSS_PIXEL
     rows, columns = optics.rows * n, optics.columns * n
     area = math.pi * optics.aperture_radius**2
     share = photons / (rows * columns)

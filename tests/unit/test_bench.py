@@ -54,7 +54,8 @@ def test_merit_goes_with_its_case_alone(small_bench, monkeypatch):
 
 
 def test_cases_have_whole_replicates():
-    assert set(bench.CASES) == {"clear 20 m", "coastal 10 m", "coastal 20 m", "harbor 4 m"}
+    waters = {"clear 20 m", "coastal 10 m", "coastal 20 m", "harbor 4 m"}
+    assert set(bench.CASES) == waters | {"coastal 10 m, waves"}
     replicates = TransportSettings().replicates
     assert all(case.walks_per_pixel % replicates == 0 for case in bench.CASES.values())
 

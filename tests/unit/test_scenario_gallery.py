@@ -45,7 +45,7 @@ def test_every_scenario_is_sound_and_says_what_to_expect(name: str) -> None:
 
 def test_the_gallery_is_complete() -> None:
     names = {"measured-seabed", "sandbar", "wreck", "turned-footprint", "too-deep"}
-    names |= {"rolling-aircraft", "area-survey", "harbor-wreck"}
+    names |= {"rolling-aircraft", "area-survey", "harbor-wreck", "reef-with-swell"}
     assert names | PAPER.keys() <= gallery().keys()
 
 
