@@ -80,7 +80,7 @@ def by_the_engine(engine, pose, place, tracks):
     for track in tracks:
         ray = ray_to(optics, 0.0, INDEX, *place, DEPTH)
         slope = track.last[:2] / -track.last[2]
-        light, in_air, deeper = sent(
+        light, in_air, deeper, _ = sent(
             engine._scene(pose), optics, engine._method, Sight(0, 0, 0.0, 1.0), ray, *place, DEPTH,
             *track.end[:2], *slope,
         )  # fmt: skip
