@@ -91,6 +91,7 @@ def check(
     """Check scenario files and show all their faults at once."""
     from survey.scenario.components import flight_size
     from survey.scenario.load import load_scenario, parse_overrides
+    from survey.scenario.seabed_files import require_readable_files
     from survey.scenario.sun import sun_notes
     from survey.scenario.water_notes import water_notes
 
@@ -98,6 +99,7 @@ def check(
     for name in scenarios:
         try:
             sound = load_scenario(name, overrides)
+            require_readable_files(sound)
         except (ValueError, OSError) as error:
             status, lines = explain(error)
             typer.echo(lines, err=True)

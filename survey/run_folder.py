@@ -101,7 +101,8 @@ def _found_manifest(path: Path) -> dict[str, Any] | None:
 
 
 def _digest(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def _code_digest() -> str:

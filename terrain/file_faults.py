@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pyproj import CRS
 
+from terrain.foreign.faults import ForeignFileError
+from terrain.foreign.limits import Limits
+from terrain.foreign.reading import read_foreign
 from terrain.map_frame import MapFrame
 
 FloatArray = NDArray[np.float64]
@@ -25,6 +29,20 @@ def existing(path: str | Path) -> Path:
     if not path.is_file():
         raise FileNotFoundError(f"{path}: no such file")
     return path
+
+
+def parsed(reader: str, path: Path, *, limits: Limits, **arguments: Any) -> dict[str, NDArray[Any]]:
+    """Return what a reader in a child process makes of a file, see `read_foreign`.
+
+    Raises
+    ------
+    SeabedFileError
+        A line for each fault of the file.
+    """
+    try:
+        return read_foreign(reader, path, limits=limits, **arguments)
+    except ForeignFileError as error:
+        raise SeabedFileError(str(error)) from None
 
 
 def require_crs(crs: CRS | None, *, epsg: int, path: Path) -> None:

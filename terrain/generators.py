@@ -21,6 +21,8 @@ from terrain.seabed import Seabed, uniform_seabed
 FloatArray = NDArray[np.float64]
 Profile = Callable[[FloatArray, FloatArray], FloatArray]
 
+MOST_CELLS = 20_000_000
+
 
 @dataclass(frozen=True, kw_only=True)
 class Ground:
@@ -55,9 +57,20 @@ class Ground:
         if not (self.length > 0.0 and self.width > 0.0 and spacing > 0.0):
             raise ValueError("seabed: length, width and spacing must be positive")
         rows, cols = (int(np.ceil(x / spacing - 1e-9)) for x in (self.length, self.width))
+        if rows * cols > MOST_CELLS:
+            raise ValueError(
+                f"seabed: {rows} x {cols} cells of {spacing:g} m are more than {MOST_CELLS:,}. "
+                "widen spacing_m, take a smaller margin_m or a shorter flight"
+            )
         s = np.linspace(-0.5 * self.length, 0.5 * self.length, rows + 1)[:, None]
         c = np.linspace(-0.5 * self.width, 0.5 * self.width, cols + 1)[None, :]
         return s, c, self.length / rows, self.width / cols
+
+    def along_across(self, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return how far local places lie along the axis and to the right of it [m]."""
+        sine, cosine = np.sin(self.axis), np.cos(self.axis)
+        east, north = x - self.centre[0], y - self.centre[1]
+        return east * sine + north * cosine, east * cosine - north * sine
 
     def place(self, s: FloatArray, c: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return local east and north of points along and across the axis [m]."""
@@ -65,7 +78,24 @@ class Ground:
         return self.centre[0] + s * sine + c * cosine, self.centre[1] + s * cosine - c * sine
 
 
-def _build(ground: Ground, profile: Profile, spacing: float, sentence: str) -> Seabed:
+def shaped(*, ground: Ground, profile: Profile, spacing: float, sentence: str) -> Seabed:
+    """Return the seabed of a formula.
+
+    Parameters
+    ----------
+    ground : Ground
+    profile : callable
+        Elevation [m] of places ``s`` (rows, 1) along and ``c`` (1, cols) right of the axis [m].
+    spacing : float
+        Side of the cells, at most [m].
+    sentence : str
+        What a product says of the shape.
+
+    Raises
+    ------
+    ValueError
+        When a size is not positive or there are more than 20 million cells.
+    """
     s, c, step, _ = ground.lattice(spacing)
     z = np.broadcast_to(profile(s, c), (s.shape[0], c.shape[1])).copy()
     if ground.roughness is not None:
@@ -102,11 +132,11 @@ def slope(*, ground: Ground, depth: float, gradient: float, spacing: float | Non
         if ground.roughness is not None:
             raise ValueError("seabed: roughness needs a spacing. state one")
         spacing = min(ground.length, ground.width)
-    return _build(
-        ground,
-        lambda s, c: -depth - gradient * s + 0.0 * c,
-        spacing,
-        f"Generated plane, {depth:g} m deep at the centre, gradient {gradient:g}.",
+    return shaped(
+        ground=ground,
+        profile=lambda s, c: -depth - gradient * s + 0.0 * c,
+        spacing=spacing,
+        sentence=f"Generated plane, {depth:g} m deep at the centre, gradient {gradient:g}.",
     )
 
 
@@ -146,11 +176,11 @@ def sandbar(
         bar = bar_height * np.exp(-0.5 * ((out - bar_distance) / bar_width) ** 2)
         return np.asarray(bed + bar + 0.0 * c)
 
-    return _build(
-        ground,
-        profile,
-        spacing,
-        f"Generated slope {gradient:g} with a bar {bar_height:g} m high "
+    return shaped(
+        ground=ground,
+        profile=profile,
+        spacing=spacing,
+        sentence=f"Generated slope {gradient:g} with a bar {bar_height:g} m high "
         f"{bar_distance:g} m off the shoreline.",
     )
 
@@ -191,11 +221,11 @@ def channel(
         rise = side_gradient * np.maximum(np.abs(c) - 0.5 * bottom_width, 0.0)
         return np.asarray(np.minimum(-channel_depth + rise, -depth) + 0.0 * s)
 
-    return _build(
-        ground,
-        profile,
-        spacing,
-        f"Generated channel {channel_depth:g} m deep in a seabed {depth:g} m deep.",
+    return shaped(
+        ground=ground,
+        profile=profile,
+        spacing=spacing,
+        sentence=f"Generated channel {channel_depth:g} m deep in a seabed {depth:g} m deep.",
     )
 
 

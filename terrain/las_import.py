@@ -7,14 +7,13 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from pyproj import CRS
 
-from terrain.file_faults import SeabedFileError, existing, frame_near, require_crs
-from terrain.las_header import require_plausible_header
+from terrain.file_faults import SeabedFileError, existing, frame_near, parsed, require_crs
+from terrain.foreign.limits import limits_for_whole
 from terrain.seabed import Seabed, uniform_seabed
 
 FloatArray = NDArray[np.float64]
-
-POINTS_AT_ONCE = 1_000_000
 
 
 def from_las(
@@ -87,26 +86,19 @@ def _read(
     path: Path, *, epsg: int, classes: Sequence[int], outline: FloatArray | None, margin: float
 ) -> FloatArray:
     """Return map coordinates (n, 3) of the wanted points."""
-    import laspy
-
-    require_plausible_header(path)
-    kept = [np.empty((0, 3))]
-    try:
-        with laspy.open(path) as source:
-            require_crs(source.header.parse_crs(), epsg=epsg, path=path)
-            for chunk in source.chunk_iterator(POINTS_AT_ONCE):
-                xyz = np.column_stack([chunk.x, chunk.y, chunk.z])
-                wanted = np.isin(np.asarray(chunk.classification), classes)
-                if outline is not None:
-                    low, high = outline.min(axis=0) - margin, outline.max(axis=0) + margin
-                    wanted &= ((xyz[:, :2] >= low) & (xyz[:, :2] <= high)).all(axis=1)
-                kept.append(xyz[wanted])
-    except SeabedFileError:
-        raise
-    except Exception as error:  # the readers raise what they like
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise SeabedFileError(f"{path}: not a readable LAS or LAZ file. {reason}") from error
-    return np.concatenate(kept)
+    box = None
+    if outline is not None:
+        box = [(outline.min(axis=0) - margin).tolist(), (outline.max(axis=0) + margin).tolist()]
+    found = parsed(
+        "terrain.foreign.las_reader:read_points",
+        path,
+        limits=limits_for_whole(path),
+        classes=list(classes),
+        box=box,
+    )
+    text = str(found["crs"])
+    require_crs(CRS.from_wkt(text) if text else None, epsg=epsg, path=path)
+    return found["points"]
 
 
 def _one_per_cell(points: FloatArray, cell: float) -> FloatArray:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from terrain.file_faults import SeabedFileError, existing, frame_near
+from terrain.file_faults import SeabedFileError, existing, frame_near, parsed
+from terrain.foreign.limits import limits_for_whole
 from terrain.seabed import Seabed, uniform_seabed
 
 if TYPE_CHECKING:
@@ -33,13 +34,10 @@ def read_mesh(path: str | Path) -> trimesh.Trimesh:
     import trimesh
 
     path = existing(path)
-    try:
-        mesh = trimesh.load_mesh(path, process=False)
-    except Exception as error:  # the readers of a dozen formats raise what they like
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise SeabedFileError(f"{path}: not a readable mesh file. {reason}") from error
-    vertices = np.asarray(getattr(mesh, "vertices", np.empty((0, 3))), dtype=np.float64)
-    faces = np.asarray(getattr(mesh, "faces", np.empty((0, 3))), dtype=np.int64)
+    found = parsed(
+        "terrain.foreign.mesh_reader:read_triangles", path, limits=limits_for_whole(path)
+    )
+    vertices, faces = found["vertices"], found["faces"]
     faults = _faults(vertices, faces)
     if faults:
         raise SeabedFileError("\n".join(f"{path}: {fault}" for fault in faults))

@@ -1,8 +1,14 @@
-"""The mean sea surface and the slopes on it that no mesh resolves."""
+"""The mean sea surface, the waves on it, and the slopes that no waves resolve."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from terrain.waves import WaveField
 
 COX_MUNK_UPWIND_PER_SPEED = 3.16e-3
 COX_MUNK_CROSSWIND_CALM = 0.003
@@ -11,25 +17,39 @@ COX_MUNK_CROSSWIND_PER_SPEED = 1.92e-3
 
 @dataclass(frozen=True, kw_only=True)
 class SeaSurface:
-    """A level sea with Gaussian facet slopes.
+    """A sea with Gaussian facet slopes, level or with waves that are resolved.
 
     Parameters
     ----------
     level : float
         Mean water level in the vertical datum [m].
     upwind_slope_variance, crosswind_slope_variance : float
-        Variance of the slope along and across the wind [1].
+        Variance of the slope along and across the wind, of all waves that the wind makes [1].
     wind_from : float
         Direction the wind blows from, clockwise from grid north [rad].
+    waves : WaveField, optional
+        Waves that light meets one by one; without them the surface is level.
+    whitecap_coverage : float
+        Share of the surface that is white, a Lambertian reflector of `FOAM_REFLECTANCE` [1].
     """
 
     level: float
     upwind_slope_variance: float
     crosswind_slope_variance: float
     wind_from: float
+    waves: WaveField | None = None
+    whitecap_coverage: float = 0.0
 
     @classmethod
-    def from_wind(cls, *, level: float, wind_speed: float, wind_from: float) -> SeaSurface:
+    def from_wind(
+        cls,
+        *,
+        level: float,
+        wind_speed: float,
+        wind_from: float,
+        waves: WaveField | None = None,
+        whitecap_coverage: float = 0.0,
+    ) -> SeaSurface:
         """Return the surface that Cox and Munk (1954, clean sea) measured at a wind speed.
 
         Slope variance 3.16e-3 U upwind and 0.003 + 1.92e-3 U crosswind, U at 12.5 m height.
@@ -50,9 +70,34 @@ class SeaSurface:
             if calm
             else COX_MUNK_CROSSWIND_CALM + COX_MUNK_CROSSWIND_PER_SPEED * wind_speed,
             wind_from=wind_from,
+            waves=waves,
+            whitecap_coverage=whitecap_coverage,
         )
 
     @property
     def slope_variance(self) -> float:
-        """Total slope variance [1]."""
+        """Total slope variance of the waves that the wind makes [1]."""
         return self.upwind_slope_variance + self.crosswind_slope_variance
+
+    @property
+    def resolved_slope_variance(self) -> tuple[float, float]:
+        """Expected slope variance of the resolved wind waves along and across the wind [1]."""
+        if self.waves is None:
+            return 0.0, 0.0
+        along = np.array([np.sin(self.wind_from), np.cos(self.wind_from)])
+        across = np.array([along[1], -along[0]])
+        covariance = self.waves.wind_slope_covariance
+        return float(along @ covariance @ along), float(across @ covariance @ across)
+
+    @property
+    def remaining_slope_variance(self) -> tuple[float, float]:
+        """Slope variance along and across the wind that no resolved wave has, not below 0 [1].
+
+        This is the roughness of the resolved waves' facets. Swell takes nothing from it: what Cox
+        and Munk found goes with the local wind alone.
+        """
+        along, across = self.resolved_slope_variance
+        return (
+            max(self.upwind_slope_variance - along, 0.0),
+            max(self.crosswind_slope_variance - across, 0.0),
+        )

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from terrain.coverage import CoverageError, uncovered
 from terrain.map_frame import MapFrame
 from terrain.raycast import SeabedGrid, build_grid, cast_rays
+from terrain.substrate import UNLABELLED, Substrate
 
 if TYPE_CHECKING:
     import trimesh
@@ -38,6 +39,10 @@ class Seabed:
         Where the local frame lies on the map.
     source : str
         A sentence: where the shape comes from.
+    substrate : array (faces,) of uint8, optional
+        Code of what a face is made of; without it no face has a label.
+    substrate_names : mapping
+        Name of every code that is in use.
 
     Raises
     ------
@@ -51,11 +56,16 @@ class Seabed:
     is_object: NDArray[np.bool_]
     map_frame: MapFrame
     source: str
+    substrate: NDArray[np.uint8] = field(default_factory=lambda: np.empty(0, dtype=np.uint8))
+    substrate_names: Mapping[int, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         faults = []
         faces = len(self.mesh.faces)
-        for name in ("reflectance", "is_object"):
+        if len(self.substrate) == 0:
+            unlabelled = np.full(faces, UNLABELLED, dtype=np.uint8)
+            object.__setattr__(self, "substrate", unlabelled)
+        for name in ("reflectance", "is_object", "substrate"):
             if np.shape(getattr(self, name)) != (faces,):
                 faults.append(f"seabed: {name}: {np.shape(getattr(self, name))} for {faces} faces")
         if not np.all((self.reflectance >= 0.0) & (self.reflectance <= 1.0)):
@@ -104,8 +114,19 @@ class Seabed:
         if gap is not None:
             raise CoverageError(gap.message(self.map_frame, label))
 
+    def painted(self, faces: Any, substrate: Substrate) -> Seabed:
+        """Return the seabed with some faces, a mask, a slice or indices, made of a substrate."""
+        reflectance, codes = self.reflectance.copy(), self.substrate.copy()
+        reflectance[faces], codes[faces] = substrate.reflectance, substrate.code
+        names = dict(self.substrate_names)
+        if substrate.code != UNLABELLED:
+            names[substrate.code] = substrate.name
+        return replace(self, reflectance=reflectance, substrate=codes, substrate_names=names)
+
     def with_object(self, mesh: trimesh.Trimesh, *, reflectance: float, source: str) -> Seabed:
         """Return the seabed with a body standing on it, in local coordinates [m].
+
+        Its faces come last and have no label.
 
         Raises
         ------
@@ -124,6 +145,7 @@ class Seabed:
             ),
             reflectance=np.concatenate([self.reflectance, np.full(faces, reflectance)]),
             is_object=np.concatenate([self.is_object, np.ones(faces, dtype=bool)]),
+            substrate=np.concatenate([self.substrate, np.full(faces, UNLABELLED, np.uint8)]),
             source=f"{self.source} {source}",
         )
 

@@ -13,6 +13,7 @@ from survey.cloud.points import PointClass, PointCloud
 from survey.cloud.ranging import Echo
 from survey.cloud.truth import TrueTargets
 from survey.flight.pose import Frame
+from terrain.substrate import UNLABELLED
 
 if TYPE_CHECKING:
     from terrain.seabed import Seabed
@@ -95,6 +96,7 @@ def surface_points(
         truth=targets.surface,
         classification=np.full(on_water.shape, PointClass.WATER_SURFACE),
         true_classification=np.where(wet, PointClass.WATER_SURFACE, PointClass.GROUND),
+        substrate=np.where(wet, UNLABELLED, targets.substrate),
         true_elevation=targets.surface[..., 2],
         depth=np.zeros(on_water.shape),
         echo=first,
@@ -131,6 +133,7 @@ def bottom_points(
         truth=targets.position,
         classification=classification,
         true_classification=targets.classification,
+        substrate=targets.substrate,
         true_elevation=seabed.elevation_at(
             position[..., 0].ravel(), position[..., 1].ravel()
         ).reshape(found.shape),
@@ -165,6 +168,7 @@ def _cloud(
     truth: FloatArray,
     classification: NDArray[np.int64],
     true_classification: NDArray[np.int64] | NDArray[np.uint8],
+    substrate: NDArray[np.int64] | NDArray[np.uint8],
     true_elevation: FloatArray,
     depth: FloatArray,
     echo: Echo,
@@ -178,6 +182,7 @@ def _cloud(
         truth=truth[which],
         classification=classification[which].astype(np.uint8),
         true_classification=true_classification[which].astype(np.uint8),
+        substrate=substrate[which].astype(np.uint8),
         true_elevation=true_elevation[which],
         time=frame.time + np.nan_to_num(echo.time[which]),
         depth=depth[which],

@@ -50,6 +50,8 @@ class PointCloud:
         `PointClass`.
     true_classification : array (n,)
         `PointClass` of what is truly there.
+    substrate : array (n,)
+        Code of what is truly there, see `terrain.substrate`; 0 for water and what has no label.
     true_elevation : array (n,)
         True elevation of seabed or sea surface at the measured place [m].
     time : array (n,)
@@ -69,6 +71,7 @@ class PointCloud:
     truth: NDArray[np.float64]
     classification: NDArray[np.uint8]
     true_classification: NDArray[np.uint8]
+    substrate: NDArray[np.uint8]
     true_elevation: NDArray[np.float64]
     time: NDArray[np.float64]
     depth: NDArray[np.float64]

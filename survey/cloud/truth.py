@@ -14,6 +14,7 @@ from survey.flight.pose import Pose
 from survey.optics.water import Water
 from terrain.raycast import cast_rays
 from terrain.sea_surface import SeaSurface
+from terrain.substrate import UNLABELLED
 
 if TYPE_CHECKING:
     from terrain.seabed import Seabed
@@ -40,6 +41,8 @@ class TrueTargets:
         Water above `position`, negative on land [m].
     classification : array (rows, columns)
         `PointClass`: ground, bathymetric point or submerged object.
+    substrate : array (rows, columns)
+        Code of what seabed or land is made of there; 0 where there is none.
     """
 
     surface: FloatArray
@@ -47,6 +50,7 @@ class TrueTargets:
     time: FloatArray
     depth: FloatArray
     classification: NDArray[np.uint8]
+    substrate: NDArray[np.uint8]
 
 
 def true_targets(
@@ -67,6 +71,8 @@ def true_targets(
         path.entry + path.direction * np.where(face >= 0, length, np.nan)[..., None],
     )
     in_water = path.air_time + path.air_time / air_length * water.group_index * length
+    met = np.where(dry, land_face, face)
+    substrate = np.where(met >= 0, seabed.substrate[np.maximum(met, 0)], UNLABELLED)
     is_object = seabed.is_object[np.maximum(face, 0)] & (face >= 0)
     wet_class = np.where(is_object, PointClass.SUBMERGED_OBJECT, PointClass.BATHYMETRIC)
     return TrueTargets(
@@ -75,6 +81,7 @@ def true_targets(
         time=np.where(dry, path.air_time / air_length * land_length, in_water),
         depth=surface.level - found[..., 2],
         classification=np.where(dry, PointClass.GROUND, wet_class).astype(np.uint8),
+        substrate=substrate.astype(np.uint8),
     )
 
 

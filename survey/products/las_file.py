@@ -37,6 +37,7 @@ EXTRA_BYTES: tuple[tuple[str, type[np.generic], str], ...] = (
     *((f"true_{axis}", np.float64, "true place of the pixel, m") for axis in "xyz"),
     ("true_elevation", np.float64, "true z at measured x, y, m"),
     ("true_class", np.uint8, "class of what is truly there"),
+    ("substrate", np.uint8, "true bottom, see metrics.json"),
 )
 RETURNS = {
     PointClass.WATER_SURFACE: (1, 2),
@@ -114,6 +115,7 @@ def read_laz(path: Path, map_frame: MapFrame, *, start_utc: datetime) -> PointCl
         truth=place("true_"),
         classification=np.array(las.classification, dtype=np.uint8),
         true_classification=np.array(las.true_class),
+        substrate=np.array(las.substrate),
         true_elevation=np.array(las.true_elevation),
         time=np.asarray(las.gps_time) - adjusted_gps_time(start_utc, np.zeros(1)),
         depth=np.array(las.depth_m, dtype=np.float64),
@@ -187,6 +189,7 @@ def _extra_columns(cloud: PointCloud, map_frame: MapFrame) -> dict[str, NDArray[
         "counts": cloud.counts,
         "true_elevation": _compressible(cloud.true_elevation),
         "true_class": cloud.true_classification,
+        "substrate": cloud.substrate,
     }
 
 

@@ -28,6 +28,7 @@ PLY_RECORD = np.dtype(
         ("pixel_column", "<u2"),
         ("classification", "u1"),
         ("true_class", "u1"),
+        ("substrate", "u1"),
     ]
 )
 PLY_TYPES = {"<f8": "double", "<f4": "float", "<u4": "uint", "<u2": "ushort", "|u1": "uchar"}
@@ -43,6 +44,7 @@ COLUMNS = {
     "column": "pixel_column",
     "classification": "classification",
     "true_classification": "true_class",
+    "substrate": "substrate",
 }
 """Names in the file of the scalar columns of a cloud."""
 

@@ -38,6 +38,13 @@ ROWS = (
     ),
     ("monte_carlo_relative_error", "{:.1%}", "Monte Carlo error of a pixel's echo, median"),
 )
+SUBSTRATE_COLUMNS = {
+    "pixels_wet": "wet pixels",
+    "found_fraction": "share found",
+    "points_bottom": "bottom points",
+    "bias_m": "mean error [m]",
+    "rmse_m": "r.m.s. error [m]",
+}
 STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 62rem;
        margin: 2rem auto; padding: 0 1rem; }
@@ -95,6 +102,7 @@ def write_report(
             f"{_missed(metrics)}</p>",
             _image(outcome_map(coverage), "map of outcomes"),
             *_errors(errors),
+            *_substrates(metrics.get("substrates", {})),
         ]
     )
     page = (
@@ -131,6 +139,21 @@ def _errors(errors: NDArray[np.float64]) -> list[str]:
         "the outermost bins hold all that is further off.</p>",
         _image(error_histogram(errors), "histogram of errors"),
     ]
+
+
+def _substrates(found: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    if len(found) < 2:
+        return []
+    head = "".join(f"<td>{words}</td>" for words in ("bottom", *SUBSTRATE_COLUMNS.values()))
+    rows = [f"<tr>{head}</tr>"]
+    for name, values in found.items():
+        cells = "".join(f"<td>{_number(values[key])}</td>" for key in SUBSTRATE_COLUMNS)
+        rows.append(f"<tr><td>{escape(name)}</td>{cells}</tr>")
+    return ["<h2>What the bottom is made of</h2>", "<table>", *rows, "</table>"]
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else f"{value:.3g}" if isinstance(value, float) else f"{value}"
 
 
 def _image(png: bytes, words: str) -> str:

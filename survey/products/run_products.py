@@ -25,6 +25,7 @@ from survey.products.pixels import explain_empty
 from survey.products.ply_file import write_ply
 from survey.products.reach import WaterClarity
 from survey.products.report import write_report
+from survey.products.substrates import substrate_metrics
 from survey.products.track_files import TrackFormat, write_trajectory_files
 from survey.products.trajectory_file import write_trajectory_csv
 from survey.products.writing import ProductError
@@ -120,6 +121,7 @@ def write_products(
         cell_size=cell,
         clarity=settings.clarity,
     )
+    found["substrates"] = substrate_metrics(bottom, results, seabed.substrate_names)
     write_json(folder / "metrics.json", found)
     write_report(
         folder / "report.html",

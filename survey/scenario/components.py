@@ -118,15 +118,10 @@ def water(scenario: Scenario) -> Water:
 
 
 def sea_surface(scenario: Scenario) -> SeaSurface:
-    """Return the sea surface that the wind makes."""
-    from terrain.sea_surface import SeaSurface
+    """Return the sea surface with its waves."""
+    from survey.scenario.surface_parts import build_sea
 
-    given = scenario.surface
-    return SeaSurface.from_wind(
-        level=given.water_level_m,
-        wind_speed=given.wind_speed_m_s,
-        wind_from=radians(given.wind_from_deg),
-    )
+    return build_sea(scenario.surface, seed=scenario.mission.seed)
 
 
 def sky(scenario: Scenario) -> Sky:
@@ -257,6 +252,22 @@ def ranging_settings(scenario: Scenario) -> RangingSettings:
     return RangingSettings(false_alarm_rate=given.false_alarm_rate, gate=width_ns * NANO)
 
 
+def view_outlines(scenario: Scenario) -> list[FloatArray]:
+    """Return what the frames see of the water, outlines (corners, 2) in the local frame [m].
+
+    Raises
+    ------
+    UserError
+        Naming frames that see no water.
+    """
+    from survey.flight.trajectory import footprints
+
+    try:
+        return footprints(camera(scenario), frames(scenario), scenario.surface.water_level_m)
+    except ValueError as fault:
+        raise _named(scenario, fault) from fault
+
+
 def seabed(scenario: Scenario) -> Seabed:
     """Return the seabed with the objects on it.
 
@@ -267,17 +278,19 @@ def seabed(scenario: Scenario) -> Seabed:
     UserError
         When the parts do not fit.
     """
-    from survey.flight.trajectory import footprints
-    from survey.scenario.seabed_parts import bare_seabed, with_objects
+    from survey.scenario.seabed_objects import with_objects
+    from survey.scenario.seabed_parts import bare_seabed
     from terrain.file_faults import SeabedFileError
 
-    frame = map_frame(scenario)
-    level = scenario.surface.water_level_m
+    frame, outlines = map_frame(scenario), view_outlines(scenario)
     try:
-        outlines = footprints(camera(scenario), frames(scenario), level)
         return with_objects(bare_seabed(scenario, frame, outlines), scenario, frame)
     except SeabedFileError:
         raise
     except ValueError as fault:
-        lines = [f"{scenario.name}: {line}" for line in str(fault).splitlines()]
-        raise UserError("\n".join(lines)) from fault
+        raise _named(scenario, fault) from fault
+
+
+def _named(scenario: Scenario, fault: ValueError) -> UserError:
+    """Return a fault with the scenario's name before every line."""
+    return UserError("\n".join(f"{scenario.name}: {line}" for line in str(fault).splitlines()))

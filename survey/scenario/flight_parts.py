@@ -191,13 +191,9 @@ def _read_track(
     path: Path, stamp: tuple[int, int], kind: kinds.TrackFormat, prefix: str, epsg: int
 ) -> Track:
     """Read a track once; another time or size of the file is another file."""
-    from survey.flight.files.cblue_file import read_cblue
-    from survey.flight.files.csv_file import read_csv_track
-    from survey.flight.files.sbet_file import read_sbet
+    from survey.flight.files import any_track
 
-    if kind == "csv":
-        return read_csv_track(path, epsg=epsg, prefix=prefix)
-    return read_cblue(path, epsg=epsg) if kind == "cblue" else read_sbet(path, epsg=epsg)
+    return any_track.read_track(path, kind=kind, epsg=epsg, prefix=prefix)
 
 
 def area_corners(given: kinds.AreaFlight, *, epsg: int, folder: Path) -> FloatArray:

@@ -15,7 +15,8 @@ from survey.scenario import flight_sections as kinds
 from survey.scenario.faults import Fault
 from survey.scenario.flight_parts import legs, sound_track
 from survey.scenario.motion_sections import AngleSwing, DistanceSwing, Motion, Navigation
-from survey.scenario.sections import Camera, Flight, Laser, Mission, Receiver, Surface
+from survey.scenario.sections import Camera, Flight, Laser, Mission, Receiver
+from survey.scenario.surface_sections import Surface
 from survey.scenario.times import gate_start_ns, two_way_ns
 
 if TYPE_CHECKING:

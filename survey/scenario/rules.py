@@ -11,9 +11,10 @@ from survey.scenario.detector_rules import DETECTOR_RULES
 from survey.scenario.faults import Fault
 from survey.scenario.flight_rules import FLIGHT_RULES
 from survey.scenario.gate_rules import gate_holds_the_water
-from survey.scenario.seabed_sections import ChannelSeabed, SeabedSection
-from survey.scenario.sections import Camera, Mission, Receiver, Section
+from survey.scenario.seabed_rules import SEABED_RULES
+from survey.scenario.sections import Camera, Mission, Receiver
 from survey.scenario.sun import SUN_RULES
+from survey.scenario.surface_rules import SURFACE_RULES
 from survey.scenario.water_rules import WATER_RULES
 
 LARGEST_FRAME_BINS = 200_000_000
@@ -28,16 +29,6 @@ def broken_rules(sound: Mapping[str, Any], folder: Path) -> list[Fault]:
         if all(need in parts for need in needs):
             faults += rule(**{need: parts[need] for need in needs})
     return faults
-
-
-def channel_is_deeper(seabed: SeabedSection) -> Iterator[Fault]:
-    """A channel lies below the bed beside it."""
-    if isinstance(seabed, ChannelSeabed) and seabed.channel_depth_m <= seabed.depth_m:
-        yield Fault(
-            "seabed.channel_depth_m",
-            f"{seabed.channel_depth_m:g} is not deeper than depth_m {seabed.depth_m:g}. "
-            "Deepen the channel.",
-        )
 
 
 def frame_fits_in_memory(camera: Camera, receiver: Receiver) -> Iterator[Fault]:
@@ -89,25 +80,15 @@ def _known_crs(epsg: int) -> Any:
         return None
 
 
-def files_exist(seabed: SeabedSection, folder: Path) -> Iterator[Fault]:
-    """Every file that the seabed names is there."""
-    named: dict[str, Section] = {"seabed.file": seabed}
-    named |= {f"seabed.objects.{number}.file": part for number, part in enumerate(seabed.objects)}
-    for place, part in named.items():
-        file = getattr(part, "file", None)
-        if file is not None and not (folder / file).is_file():
-            yield Fault(place, f"no file '{file}' in {folder}.", missing_file=True)
-
-
 RULES: tuple[Callable[..., Iterator[Fault]], ...] = (
     *FLIGHT_RULES,
     gate_holds_the_water,
-    channel_is_deeper,
     frame_fits_in_memory,
     map_is_projected_in_metres,
     heights_are_in_metres,
-    files_exist,
+    *SEABED_RULES,
     *DETECTOR_RULES,
     *SUN_RULES,
+    *SURFACE_RULES,
     *WATER_RULES,
 )

@@ -13,12 +13,14 @@ from survey.scenario import sections
 from survey.scenario.faults import Fault, ScenarioError
 from survey.scenario.motion_sections import Motion, Navigation
 from survey.scenario.rules import broken_rules
+from survey.scenario.seabed_materials import fill_reflectances
 from survey.scenario.seabed_sections import SeabedSection
 from survey.scenario.sun import (
     air_extinction_per_m,
     stated_irradiance_w_m2_nm,
     water_reflectance,
 )
+from survey.scenario.surface_sections import Surface
 from survey.scenario.times import gate_start_ns
 from survey.scenario.toml_text import to_toml
 from survey.scenario.validate import validate
@@ -53,7 +55,7 @@ class Scenario:
     receiver: sections.Receiver
     detector: sections.Detector
     water: sections.Water
-    surface: sections.Surface
+    surface: Surface
     seabed: SeabedSection
     sun: sections.Sun
     transport: sections.Transport
@@ -129,6 +131,7 @@ class Scenario:
         _default(tables["receiver"], "gate_start_ns", gate_start_ns(self.receiver, self.flight))
         _default(tables["processing"], "echo_gate_ns", self.laser.pulse_width_ns)
         self._resolve_sun(tables["sun"])
+        fill_reflectances(tables["seabed"])
 
     def _resolve_sun(self, table: dict[str, Any]) -> None:
         """Fill in the numbers that no other key of the section says already."""

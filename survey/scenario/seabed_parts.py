@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from math import radians, tan
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +12,13 @@ from numpy.typing import NDArray
 from survey.scenario import seabed_sections as kinds
 from survey.scenario.components import flight_plan
 from survey.scenario.scenario import Scenario
+from survey.scenario.seabed_files import cover, imported, roughness
+from survey.scenario.seabed_materials import reef_material, stated_reflectance, substrate_of
 from terrain.map_frame import MapFrame
+from terrain.substrate import UNLABELLED
 
 if TYPE_CHECKING:
-    import trimesh
-
     from terrain.generators import Ground
-    from terrain.roughness import Roughness
     from terrain.seabed import Seabed
 
 FloatArray = NDArray[np.float64]
@@ -37,10 +36,17 @@ def bare_seabed(scenario: Scenario, frame: MapFrame, outlines: Sequence[FloatArr
         Footprints in the local frame [m]: what lies beyond their margin is not needed.
     """
     given = scenario.seabed
-    if isinstance(given, kinds.MadeSeabed):
-        return _made(given, _Site(scenario, frame, outlines))
     corners = np.concatenate(outlines) + frame.origin[:2]
-    return _in_frame(_imported(given, scenario, corners), frame)
+    if isinstance(given, kinds.MadeSeabed):
+        seabed = _made(given, _Site(scenario, frame, outlines))
+    else:
+        seabed = imported(scenario, corners, frame)
+    seabed = seabed.painted(seabed.substrate == UNLABELLED, substrate_of(given, given))
+    if given.map is None:
+        return seabed
+    from terrain.cover_faces import covered
+
+    return covered(seabed, cover(given.map, scenario, corners))
 
 
 class _Site:
@@ -73,27 +79,14 @@ class _Site:
             length=2.0 * float(reach[0]),
             width=2.0 * float(reach[1]),
             axis=axis,
-            reflectance=given.reflectance,
-            roughness=_roughness(given),
+            reflectance=stated_reflectance(given.model_dump()),
+            roughness=roughness(given),
         )
 
     def start_along(self, ground: Ground) -> float:
         """Return how far along the ground's axis the flight starts, from its centre [m]."""
         axis = np.array([np.sin(ground.axis), np.cos(ground.axis)])
         return float((self.start - np.array(ground.centre)) @ axis)
-
-
-def _roughness(given: kinds.RoughenedSeabed) -> Roughness | None:
-    from terrain.roughness import Roughness
-
-    if given.roughness_rms_m == 0.0:
-        return None
-    return Roughness(
-        rms=given.roughness_rms_m,
-        spectral_slope=given.roughness_spectral_slope,
-        longest_wavelength=given.roughness_longest_wave_m,
-        seed=given.roughness_seed,
-    )
 
 
 def _made(given: kinds.MadeSeabed, site: _Site) -> Seabed:
@@ -103,6 +96,10 @@ def _made(given: kinds.MadeSeabed, site: _Site) -> Seabed:
         return _channel(given, site)
     if isinstance(given, kinds.SlopeSeabed):
         return _slope(given, site)
+    if isinstance(given, kinds.RipplesSeabed):
+        return _ripples(given, site)
+    if isinstance(given, kinds.ReefSeabed):
+        return _reef(given, site)
     assert isinstance(given, kinds.PlaneSeabed | kinds.RoughSeabed)
     from terrain.generators import plane
 
@@ -159,76 +156,38 @@ def _channel(given: kinds.ChannelSeabed, site: _Site) -> Seabed:
     )
 
 
-def _imported(given: kinds.SeabedSection, scenario: Scenario, corners: FloatArray) -> Seabed:
-    """Return the seabed of a file, as far as it lies about corners (n, 2) on the map [m]."""
-    from terrain import importers
+def _ripples(given: kinds.RipplesSeabed, site: _Site) -> Seabed:
+    from terrain.bedforms import ripples
 
-    mission = scenario.mission
-    common: dict[str, Any] = {
-        "epsg": mission.crs_epsg,
-        "vertical_epsg": mission.vertical_epsg,
-        "reflectance": given.reflectance,
-    }
-    nearby: dict[str, Any] = {"outline": corners, "margin": given.margin_m}
-    if isinstance(given, kinds.RasterSeabed):
-        return importers.from_raster(
-            scenario.folder / given.file,
-            band=given.band,
-            spacing=given.spacing_m,
-            roughness=_roughness(given),
-            **nearby,
-            **common,
-        )
-    if isinstance(given, kinds.PointsSeabed):
-        return importers.from_las(
-            scenario.folder / given.file,
-            classes=given.classes,
-            cell=given.cell_m,
-            longest_edge=given.longest_edge_m,
-            **nearby,
-            **common,
-        )
-    assert isinstance(given, kinds.MeshSeabed)
-    offset = (given.offset_easting_m, given.offset_northing_m, given.offset_up_m)
-    return importers.from_mesh_file(scenario.folder / given.file, offset=offset, **common)
+    return ripples(
+        ground=site.ground(given, radians(given.crest_deg)),
+        depth=given.depth_m,
+        wavelength=given.wavelength_m,
+        height=given.height_m,
+        asymmetry=given.asymmetry,
+        crest_wander=given.crest_wander_m,
+        seed=given.crest_seed,
+        spacing=given.spacing_m,
+    )
 
 
-def _in_frame(seabed: Seabed, frame: MapFrame) -> Seabed:
-    """Return the seabed in another local frame."""
-    mesh = seabed.mesh.copy()
-    mesh.apply_translation(seabed.map_frame.origin - frame.origin)
-    return replace(seabed, mesh=mesh, map_frame=frame)
+def _reef(given: kinds.ReefSeabed, site: _Site) -> Seabed:
+    from terrain.bedforms import reef
+    from terrain.roughness import Roughness
 
-
-def with_objects(seabed: Seabed, scenario: Scenario, frame: MapFrame) -> Seabed:
-    """Return the seabed with the scenario's objects set on it, each on what was there before."""
-    from terrain.objects import place
-
-    for given in scenario.seabed.objects:
-        body = place(
-            _body(given, scenario),
-            seabed=seabed,
-            east=given.easting_m - frame.easting,
-            north=given.northing_m - frame.northing,
-            heading=radians(given.heading_deg),
-            list_angle=radians(given.list_deg),
-            trim_angle=radians(given.trim_deg),
-            burial=given.burial_m,
-        )
-        sentence = f"On it: {given.kind}."
-        seabed = seabed.with_object(body, reflectance=given.reflectance, source=sentence)
-    return seabed
-
-
-def _body(given: kinds.SeabedObject, scenario: Scenario) -> trimesh.Trimesh:
-    from terrain import objects
-
-    if isinstance(given, kinds.Wreck):
-        return objects.wreck(length=given.length_m, beam=given.beam_m, height=given.hull_height_m)
-    if isinstance(given, kinds.Boulder):
-        return objects.boulder(radius=0.5 * given.diameter_m, relief=given.relief, seed=given.seed)
-    if isinstance(given, kinds.Cube):
-        return objects.cube(side=given.side_m)
-    from terrain.importers import read_mesh
-
-    return read_mesh(scenario.folder / given.file)
+    centre = site.local(given.reef_easting_m, given.reef_northing_m)
+    return reef(
+        ground=site.ground(given, radians(given.reef_heading_deg), centre),
+        depth=given.depth_m,
+        top_depth=given.reef_depth_m,
+        top_width=given.top_width_m,
+        side_gradient=tan(radians(given.side_slope_deg)),
+        relief=Roughness(
+            rms=given.relief_rms_m,
+            spectral_slope=given.relief_spectral_slope,
+            longest_wavelength=given.relief_longest_wave_m,
+            seed=given.relief_seed,
+        ),
+        coral=substrate_of(reef_material(given), given),
+        spacing=given.spacing_m,
+    )

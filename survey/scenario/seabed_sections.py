@@ -2,71 +2,52 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
+from pydantic_core import PydanticCustomError
 
+from survey.scenario.seabed_object_sections import Material, SeabedObject, Seed
 from survey.scenario.sections import Bearing, Count, Fraction, NotNegative, Positive, Section, Text
 
 PointClassCode = Annotated[int, Field(ge=0, le=255)]
 Slope = Annotated[float, Field(gt=0.0, le=80.0)]
-Tilt = Annotated[float, Field(ge=-180.0, le=180.0)]
+Asymmetry = Annotated[float, Field(ge=1.0, le=20.0)]
+SpectralSlope = Annotated[float, Field(gt=0.0, le=6.0)]
 
 
-class Placed(Section):
-    """What every object has: its place on the map, how it lies, how deep it is buried.
+def _number_or_none(value: Any) -> Any:
+    if isinstance(value, str) and value != "none":
+        raise PydanticCustomError("nodata", 'neither a number nor "none"')
+    return value
 
-    A positive list lowers its starboard side, a positive trim lifts its bow.
+
+NoData = Annotated[float | Literal["none"] | None, BeforeValidator(_number_or_none)]
+
+
+class MapClass(Material):
+    """What the cells of one number in a map are made of."""
+
+    value: int
+
+
+class BottomMap(Section):
+    """A raster in the mission's map of what the bottom is made of.
+
+    With `classes` its cells hold their numbers, without them reflectances, 0 to 1. Beyond the map,
+    and where it has no data, the bottom is that of the section.
     """
 
-    easting_m: float
-    northing_m: float
-    heading_deg: Bearing = 0.0
-    list_deg: Tilt = 0.0
-    trim_deg: Tilt = 0.0
-    burial_m: NotNegative = 0.0
-    reflectance: Fraction = 0.1
-
-
-class Wreck(Placed):
-    """A hull with overhangs."""
-
-    kind: Literal["wreck"]
-    length_m: Positive = 30.0
-    beam_m: Positive = 6.0
-    hull_height_m: Positive = 3.0
-
-
-class Boulder(Placed):
-    """A rounded rock; its relief is a part of its radius."""
-
-    kind: Literal["boulder"]
-    diameter_m: Positive = 3.0
-    relief: Annotated[float, Field(ge=0.0, le=0.3)] = 0.15
-    seed: Annotated[int, Field(ge=0)] = 1
-
-
-class Cube(Placed):
-    """The cube of the hydrographic feature tests."""
-
-    kind: Literal["cube"]
-    side_m: Positive = 2.0
-
-
-class MeshObject(Placed):
-    """Any mesh file in metres, z up, y towards its heading."""
-
-    kind: Literal["mesh"]
     file: Text
+    band: Count = 1
+    nodata: NoData = None
+    classes: list[MapClass] = Field(default_factory=list)
 
 
-SeabedObject = Annotated[Wreck | Boulder | Cube | MeshObject, Field(discriminator="kind")]
-
-
-class SeabedSection(Section):
+class SeabedSection(Material):
     """What every seabed has; it is read or made up to `margin_m` beyond the flight."""
 
-    reflectance: Fraction = 0.1
+    map: BottomMap | None = None
     margin_m: Positive = 100.0
     objects: list[SeabedObject] = Field(default_factory=list)
 
@@ -75,17 +56,21 @@ class RoughenedSeabed(SeabedSection):
     """A seabed to which synthetic fine relief may be added."""
 
     roughness_rms_m: NotNegative = 0.0
-    roughness_spectral_slope: Annotated[float, Field(gt=0.0, le=6.0)] = 3.0
+    roughness_spectral_slope: SpectralSlope = 3.0
     roughness_longest_wave_m: Positive = 20.0
-    roughness_seed: Annotated[int, Field(ge=0)] = 1
+    roughness_seed: Seed = 1
 
 
 class RasterSeabed(RoughenedSeabed):
-    """A raster of elevations, positive up, in the mission's map; finer cells when asked for."""
+    """A raster of elevations, positive up, in the mission's map; finer cells when asked for.
+
+    `nodata` is the value of cells without data, or "none", where the file does not tell.
+    """
 
     kind: Literal["raster"]
     file: Text
     band: Count = 1
+    nodata: NoData = None
     spacing_m: Positive | None = None
 
 
@@ -165,6 +150,40 @@ class ChannelSeabed(MadeSeabed):
     side_slope_deg: Slope
 
 
+class RipplesSeabed(MadeSeabed):
+    """Sand ripples; the depth is their mean, the steep flank falls to the right of the crests."""
+
+    kind: Literal["ripples"]
+    depth_m: float
+    wavelength_m: Positive
+    height_m: Positive
+    crest_deg: Bearing
+    asymmetry: Asymmetry = 1.0
+    crest_wander_m: NotNegative = 0.0
+    crest_seed: Seed = 1
+    spacing_m: Positive = 0.5
+
+
+class ReefSeabed(MadeSeabed):
+    """A level bed with a flat-topped rough reef through a point of the map."""
+
+    kind: Literal["reef"]
+    depth_m: float
+    reef_depth_m: float
+    reef_easting_m: float
+    reef_northing_m: float
+    reef_heading_deg: Bearing
+    top_width_m: Positive
+    side_slope_deg: Slope = 30.0
+    relief_rms_m: Positive = 0.3
+    relief_spectral_slope: SpectralSlope = 3.0
+    relief_longest_wave_m: Positive = 10.0
+    relief_seed: Seed = 1
+    reef_substrate: Text = "coral"
+    reef_reflectance: Fraction | None = None
+    spacing_m: Positive = 1.0
+
+
 class RoughSeabed(MadeSeabed):
     """Level but for its roughness."""
 
@@ -181,6 +200,8 @@ Seabed = Annotated[
     | SlopeSeabed
     | SandbarSeabed
     | ChannelSeabed
+    | RipplesSeabed
+    | ReefSeabed
     | RoughSeabed,
     Field(discriminator="kind"),
 ]

@@ -105,14 +105,6 @@ class Water(Section):
     group_index: Annotated[float, Field(ge=1.0, le=2.0)] = 1.36
 
 
-class Surface(Section):
-    """The water level in the vertical datum, and the wind on it."""
-
-    water_level_m: float
-    wind_speed_m_s: Annotated[float, Field(ge=0.0, le=20.0)] = 5.0
-    wind_from_deg: Bearing = 0.0
-
-
 class Sun(Section):
     """Background light: by the sun's place and the air, or a stated radiance instead.
 
@@ -138,8 +130,8 @@ class Transport(Section):
     """How many light paths the Monte Carlo makes and where it splits them."""
 
     walks_per_pixel: Annotated[int, Field(ge=3)] = 64
-    replicates: Annotated[int, Field(ge=3)] = 8
-    tracks_per_replicate: Annotated[int, Field(ge=16)] = 512
+    replicates: Annotated[int, Field(ge=3)] = 4
+    tracks_per_replicate: Annotated[int, Field(ge=16)] = 1024
     split_angle_deg: Annotated[float, Field(gt=0.0, lt=90.0)] = 45.0
     column_spacing: Positive = 1.0
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from survey.scenario.faults import Fault
-from survey.scenario.sections import Flight, Laser, Receiver, Sun, Surface, Water
+from survey.scenario.sections import Flight, Laser, Receiver, Sun, Water
+from survey.scenario.surface_sections import Surface
 
 PAPER_IRRADIANCE_W_M2_NM = 1.95  # E_perp at 0.53 um, [Lisenko2017]
 PAPER_WATER_REFLECTANCE = 0.0097  # rho_s, the lower end of [Lisenko2017]

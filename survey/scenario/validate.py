@@ -21,6 +21,7 @@ from survey.scenario.faults import (
 )
 from survey.scenario.flight_sections import AnyFlight
 from survey.scenario.seabed_sections import Seabed
+from survey.scenario.surface_sections import Surface
 from survey.scenario.water_sections import WAYS_TO_STATE_A_WATER, AnyWater
 
 SECTIONS: dict[str, Any] = {
@@ -33,7 +34,7 @@ SECTIONS: dict[str, Any] = {
     "receiver": sections.Receiver,
     "detector": AnyDetector,
     "water": AnyWater,
-    "surface": sections.Surface,
+    "surface": Surface,
     "seabed": Seabed,
     "sun": sections.Sun,
     "transport": sections.Transport,

@@ -18,6 +18,7 @@ from survey.optics.water import Water
 from survey.sensor.camera import Camera
 from survey.sensor.laser import Laser
 from survey.sensor.receiver import Receiver
+from survey.transport.allocation import deviations, strays, walks_of_pixels
 from survey.transport.glint import add_glint, add_mirror
 from survey.transport.launch import Optics
 from survey.transport.light_paths import Method
@@ -46,6 +47,7 @@ COARSE_SHARE = 0.4
 AZIMUTHS = 256
 FEWEST_LEGS, MOST_LEGS = 6, 24
 LEGS_PER_SCATTERING, LEGS_BESIDE = 3, 64
+TO_A_MILLIMETRE = 3
 
 
 def kernel_optics(*, camera: Camera, receiver: Receiver, pose: Pose) -> Optics:
@@ -134,30 +136,32 @@ class Engine:
             self._medium, 2 * settings.replicates, settings.tracks_per_replicate, legs,
             scene.bounds.depth, self._method.split_cosine, *address,
         )  # fmt: skip
-        pixels, tally = optics.rows * optics.columns, self._tally()
+        strayed = strays(tracks, scene.bounds.depth, self.water.scattering)
+        deviation = deviations(scene, optics, strayed, self._method.isolated)
+        walks = walks_of_pixels(deviation, mean=settings.walks_per_replicate)
+        pixels, tally = len(walks), self._tally()
         mean = np.empty((3, pixels, self.receiver.bins), np.float32)
         variance = np.empty_like(mean)
         variance[0] = 0.0
         mean[0] = self._surface_echo(scene, optics)
         see_all(
             scene, self._medium, optics, self._method, tracks, tally, address,
-            np.empty(2, np.uint64), mean[1:], variance[1:],
+            walks, np.empty(2, np.uint64), mean[1:], variance[1:],
         )  # fmt: skip
+        launched = settings.replicates * walks.sum()
         grid = (3, optics.rows, optics.columns, self.receiver.bins)
-        walks = pixels * settings.replicates * settings.walks_per_replicate
         return Waveforms(
             photo_electrons=mean.reshape(grid),
             variance=variance.reshape(grid),
             bin_start=self.receiver.gate_start,
             bin_width=self.receiver.bin_width,
             scatterings=int(tally.noted[1]),
-            ledger=dict(zip(LEDGER_NAMES, (tally.ledger / walks).tolist(), strict=True)),
+            ledger=dict(zip(LEDGER_NAMES, (tally.ledger / launched).tolist(), strict=True)),
         )
 
     def _light_paths(self) -> Method:
         azimuth = 2.0 * np.pi * np.arange(AZIMUTHS) / AZIMUTHS
         return Method(
-            walks=self.settings.walks_per_replicate,
             split_cosine=float(np.cos(self.settings.split_angle)),
             spacing=self.settings.column_spacing / max(self.water.attenuation, 1e-9),
             isolated=self.settings.illumination == "isolated",
@@ -178,7 +182,7 @@ class Engine:
             fine=np.empty((2, self._bins.number), np.float32),
             coarse=np.empty((self.settings.replicates, 2, coarse_bins), np.float32),
             down=np.empty((legs, 7)),
-            back=np.empty((legs, 8)),
+            back=np.empty((legs, 9)),
             noted=np.zeros(2, np.int64),
             ledger=np.zeros(len(LEDGER_NAMES)),
             taps=self._taps.astype(np.float32),
@@ -214,7 +218,7 @@ class Engine:
                 north=north,
                 lowest=lowest,
                 highest=highest,
-                depth=min(max(level - top, 0.0), in_gate),
+                depth=round(min(max(level - top, 0.0), in_gate), TO_A_MILLIMETRE),
                 latest=self.receiver.gate_end,
             ),
         )

@@ -25,7 +25,7 @@ from survey.transport.random import uniform
 from survey.transport.scene import Medium, Scene
 from survey.transport.surface import drawn_normal, enter_water, facing_from_below
 from survey.transport.tally import BOTTOM, COLUMN, Tally, deposit
-from survey.transport.tracks import Tracks, axes_around
+from survey.transport.tracks import Course, Tracks, axes_around
 from terrain.kernels import inlined_kernel
 from terrain.raycast import first_hit
 
@@ -38,7 +38,6 @@ ROULETTE_BELOW, ROULETTE_SURVIVAL = 1e-4, 0.1
 class Method(NamedTuple):
     """How light paths are made: see `TransportSettings`; ``photons`` launched in a pulse."""
 
-    walks: int
     split_cosine: float
     spacing: float
     isolated: bool
@@ -204,9 +203,7 @@ def add_column(
     table = method.cosine_table
     for i in range(tally.noted[0]):
         back = tally.back[i]
-        if abs(back[5]) < FLATTEST:
-            continue
-        to = (z - back[2]) / back[5]
+        to = (z - back[2]) * back[8]
         if not 0.0 <= to < back[6]:
             continue
         cosine = -(dx * back[3] + dy * back[4] + dz * back[5])
@@ -215,7 +212,7 @@ def add_column(
         x, y = back[0] + back[3] * to, back[1] + back[4] * to
         light, in_air, deeper = light_sent(
             scene, optics, method, sight, ray, x, y, depth, east, north,
-            back[3] / -back[5], back[4] / -back[5],
+            -back[3] * back[8], -back[4] * back[8],
         )  # fmt: skip
         if light == 0.0:
             continue
@@ -226,8 +223,8 @@ def add_column(
         at = max(0.0, 0.5 * (cosine + 1.0) * (table.shape[0] - 1))
         entry = min(int(at), table.shape[0] - 2)
         density = table[entry] + (at - entry) * (table[entry + 1] - table[entry])
-        whole = path + along + back[7] + to - deeper / back[5]
-        photons = method.photons * strength * light * sight.importance / abs(back[5])
+        whole = path + along + back[7] + to - deeper * back[8]
+        photons = method.photons * strength * light * sight.importance * abs(back[8])
         photons *= medium.scattering * method.spacing * density
         deposit(
             tally, COLUMN, sight.batch,
@@ -246,7 +243,7 @@ def send_light(
     tally: Tally,
     sight: Sight,
     place: Place,
-    track: int,
+    way: Course,
     weight: float,
     with_column: bool,
     state: NDArray[np.uint64],
@@ -277,7 +274,7 @@ def send_light(
     floor = sea.level - scene.bounds.lowest
     sample = method.spacing * uniform(state)
     beyond = place.gain == 0.0
-    optical = tracks.legs[which, track, 0, 3]
+    track, optical = way.track, way.optical
     while True:
         row = tracks.legs[which, track, k]
         dx = row[0] * ax + row[1] * bx + row[2] * cx

@@ -14,6 +14,7 @@ from survey.transport.beam import light_on_water
 from survey.transport.directions import lambert_direction
 from survey.transport.launch import Optics, direction_of, fraction
 from survey.transport.light_paths import (
+    FLATTEST,
     ROULETTE_BELOW,
     ROULETTE_SURVIVAL,
     Method,
@@ -24,9 +25,9 @@ from survey.transport.light_paths import (
 from survey.transport.random import PIXELS, start_stream, uniform
 from survey.transport.scene import Medium, Scene
 from survey.transport.surface import drawn_normal, enter_water, facing_from_below
-from survey.transport.tally import BOTTOM, Tally, add_up, clear, deposit, tell_variance
-from survey.transport.tracks import Tracks, axes_around, chosen
-from terrain.kernels import inlined_kernel, leaf_kernel
+from survey.transport.tally import BOTTOM, Tally, add_up, clear, deposit, note_leg, tell_variance
+from survey.transport.tracks import Course, Tracks, axes_around, chosen, course
+from terrain.kernels import fused_kernel, inlined_kernel, leaf_kernel
 from terrain.raycast import first_hit
 
 # Roberts (2018): additive recurrences of low discrepancy in one and two dimensions.
@@ -90,7 +91,7 @@ def walk_back(
     tracks: Tracks,
     tally: Tally,
     which: int,
-    track: int,
+    way: Course,
     start: Touch,
     limit: float,
     noting: bool,
@@ -106,7 +107,7 @@ def walk_back(
     ax, ay, az, bx, by, bz = axes_around(dx, dy, dz, method.circle, state)
     cx, cy, cz = dx, dy, dz
     k, fate = 0, LATE
-    optical = tracks.legs[which, track, 0, 3]
+    track, optical = way.track, way.optical
     unabsorbed = weight * math.exp(-medium.attenuation * path)
     while True:
         row = tracks.legs[which, track, k]
@@ -122,13 +123,8 @@ def walk_back(
             to_bottom, face = first_hit(scene.grid, x, y, z, dx, dy, dz, length)
             if face >= 0:
                 length = to_bottom
-        if noting:
-            i = tally.noted[0]
-            if i < tally.back.shape[0]:
-                leg = tally.back[i]
-                leg[0], leg[1], leg[2], leg[3] = x, y, z, dx
-                leg[4], leg[5], leg[6], leg[7] = dy, dz, length, path
-                tally.noted[0] = i + 1
+        if noting and abs(dz) >= FLATTEST:
+            note_leg(tally, x, y, z, dx, dy, dz, length, path)
         x, y, z, path = x + dx * length, y + dy * length, z + dz * length, path + length
         if face >= 0:
             kept = weight * math.exp(-medium.attenuation * path)
@@ -203,20 +199,18 @@ def see_bottom(
     tally: Tally,
     sight: Sight,
     start: Touch,
-    back: float,
-    down: float,
+    back: Course,
+    down: Course,
     state: NDArray[np.uint64],
 ) -> None:
     """Walk back from under the surface, from touch to touch of the bottom, and light it all."""
     height = optics.position[2] - scene.sea.level
     limit = (scene.bounds.latest - sight.time - height / speed_of_light) * medium.speed
     tally.noted[0], entered, which = 0, start.weight, 2 * sight.batch
-    back_track, back_weight = chosen(tracks, which + 1, back)
-    down_track, down_weight = chosen(tracks, which, down)
-    touches = 0
+    entry_weight, touches = back.weight, 0
     while True:
         touch = walk_back(
-            scene, medium, method, tracks, tally, which + 1, back_track, start, limit,
+            scene, medium, method, tracks, tally, which + 1, back, start, limit,
             touches == 0, state,
         )  # fmt: skip
         nx, ny, nz, rho = 0.0, 0.0, 1.0, 0.0
@@ -230,7 +224,7 @@ def see_bottom(
         gain = sight.importance * touch.weight / entered * rho / math.pi
         send_light(
             scene, medium, optics, method, tracks, tally, sight,
-            Place(x, y, z, nx, ny, nz, touch.path, gain), down_track, back_weight * down_weight,
+            Place(x, y, z, nx, ny, nz, touch.path, gain), down, entry_weight * down.weight,
             touches == 0, state,
         )  # fmt: skip
         if touch.face < 0:
@@ -248,8 +242,8 @@ def see_bottom(
             -1, x + nx * LIFT, y + ny * LIFT, z + nz * LIFT, dx, dy, dz,
             touch.path, touch.weight * rho / BOUNCE_CHANCE,
         )  # fmt: skip
-        back_track = int(uniform(state) * tracks.legs.shape[1])
-        down_track, down_weight = chosen(tracks, which, uniform(state))
+        back = course(tracks, which + 1, int(uniform(state) * tracks.legs.shape[1]), 1.0)
+        down = chosen(tracks, which, uniform(state))
 
 
 @inlined_kernel
@@ -262,17 +256,19 @@ def see(
     tally: Tally,
     pixel: int,
     batch: int,
+    walks: int,
     in_rows: float,
     in_columns: float,
     back: float,
     down: float,
     state: NDArray[np.uint64],
 ) -> None:
-    """Send one walk from a pixel, through the aperture and the air, to land or into the water.
+    """Send one of many walks from a pixel, through the aperture and the air, to land or into water.
 
     ``in_rows`` and ``in_columns`` say where in the field of view it looks, from 0 to 1. The etendue
     of a direction is aperture area x cos^4 (to boresight) x tangent-plane area.
     """
+    way_back, way_down = chosen(tracks, 2 * batch + 1, back), chosen(tracks, 2 * batch, down)
     row, column = 2.0 * in_rows - 1.0, 2.0 * in_columns - 1.0
     if optics.columns_forward:
         forward, right = -column * optics.half_forward, row * optics.half_right
@@ -293,7 +289,7 @@ def see(
         ledger[REFLECTED] += 1.0
         return
     solid = 4.0 * optics.half_forward * optics.half_right / (optics.rows * optics.columns)
-    importance = math.pi * optics.aperture_radius**2 * solid * cosine**4 / method.walks
+    importance = math.pi * optics.aperture_radius**2 * solid * cosine**4 / walks
     level = scene.sea.level
     length = (level - z) / dz
     to_land, face = math.inf, -1
@@ -317,7 +313,9 @@ def see(
         return
     sight = Sight(pixel, batch, length / speed_of_light, importance * weight * gain_of(medium))
     start = Touch(-1, x, y, level, dx, dy, dz, 0.0, weight)
-    see_bottom(scene, medium, optics, method, tracks, tally, sight, start, back, down, state)
+    see_bottom(
+        scene, medium, optics, method, tracks, tally, sight, start, way_back, way_down, state
+    )
 
 
 @leaf_kernel
@@ -326,7 +324,7 @@ def gain_of(medium: Medium) -> float:
     return 1.0 / (medium.refractive_index * medium.refractive_index)
 
 
-@leaf_kernel
+@fused_kernel
 def see_all(
     scene: Scene,
     medium: Medium,
@@ -335,11 +333,15 @@ def see_all(
     tracks: Tracks,
     tally: Tally,
     address: Address,
+    walks: NDArray[np.int64],
     state: NDArray[np.uint64],
     mean: NDArray[np.float32],
     variance: NDArray[np.float32],
 ) -> None:
-    """Fill ``mean`` and ``variance`` (2, pixels, bins) with column and bottom."""
+    """Fill ``mean`` and ``variance`` (2, pixels, bins) with column and bottom.
+
+    ``walks`` (pixels,) are those of a replicate.
+    """
     for pixel in range(mean.shape[1]):
         clear(tally)
         row, column = pixel // optics.columns, pixel % optics.columns
@@ -347,12 +349,12 @@ def see_all(
             start_stream(state, address.seed, PIXELS, address.frame, batch, pixel)
             shift_1, shift_2 = uniform(state), uniform(state)
             shift_3, shift_4 = uniform(state), uniform(state)
-            for i in range(method.walks):
+            for i in range(walks[pixel]):
                 see(
-                    scene, medium, optics, method, tracks, tally, pixel, batch,
+                    scene, medium, optics, method, tracks, tally, pixel, batch, walks[pixel],
                     (row + fraction(shift_1 + i * PLASTIC_1)) / optics.rows,
                     (column + fraction(shift_2 + i * PLASTIC_2)) / optics.columns,
-                    fraction(shift_3 + i / method.walks),
+                    fraction(shift_3 + i / walks[pixel]),
                     fraction(shift_4 + i * GOLDEN),
                     state,
                 )  # fmt: skip

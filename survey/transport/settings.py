@@ -30,8 +30,8 @@ class TransportSettings:
     """
 
     walks_per_pixel: int = 64
-    replicates: int = 8
-    tracks_per_replicate: int = 512
+    replicates: int = 4
+    tracks_per_replicate: int = 1024
     split_angle: float = radians(45.0)
     column_spacing: float = 1.0
     illumination: Literal["flood", "isolated"] = "flood"

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from terrain.kernels import leaf_kernel
+from terrain.kernels import fused_kernel, inlined_kernel, leaf_kernel
 
 COLUMN, BOTTOM = 0, 1
 
@@ -28,10 +28,10 @@ class Tally(NamedTuple):
     ``fine`` (2, bins) are photons of column and bottom, all replicates together; ``coarse``
     (replicates, 2, bins) each replicate's own in bins of ``width`` fine ones. ``down`` (legs, 7)
     are the legs of the track of light: place relative to where it entered, with the depth,
-    direction, length; ``back`` (legs, 8) those of the walk from the pixel before its first turn:
-    place, direction, length, path before. ``noted[0]`` counts the latter, ``noted[1]`` all
-    scatterings. ``taps`` and ``coarse_taps`` are the pulse in both kinds of bins, ``rows`` (3,
-    coarse bins and as many as the pulse reaches) room to work.
+    direction, length; ``back`` (legs, 9) those of the walk from the pixel before its first turn:
+    place, direction, length, path before, path per metre up. ``noted[0]`` counts the latter,
+    ``noted[1]`` all scatterings. ``taps`` and ``coarse_taps`` are the pulse in both kinds of bins,
+    ``rows`` (3, coarse bins and as many as the pulse reaches) room to work.
     """
 
     bins: TimeBins
@@ -61,6 +61,27 @@ def deposit(tally: Tally, origin: int, batch: int, time: float, photons: float) 
     tally.coarse[batch, origin, int(place + 0.5) // tally.width] += photons
 
 
+@inlined_kernel
+def note_leg(
+    tally: Tally,
+    x: float,
+    y: float,
+    z: float,
+    dx: float,
+    dy: float,
+    dz: float,
+    length: float,
+    path: float,
+) -> None:
+    """Note a leg of the walk from the pixel, while there is room."""
+    i = tally.noted[0]
+    if i < tally.back.shape[0]:
+        leg = tally.back[i]
+        leg[0], leg[1], leg[2], leg[3], leg[4], leg[5] = x, y, z, dx, dy, dz
+        leg[6], leg[7], leg[8] = length, path, 1.0 / dz
+        tally.noted[0] = i + 1
+
+
 @leaf_kernel
 def clear(tally: Tally) -> None:
     """Make room for another pixel."""
@@ -79,7 +100,7 @@ def lit_bins(tally: Tally, origin: int) -> tuple[int, int]:
     return first, last
 
 
-@leaf_kernel
+@fused_kernel
 def smear(source: FloatRow, taps: FloatRow, first: int, last: int, target: FloatRow) -> None:
     """Add the lit bins ``first`` to ``last`` of a row to ``target``, each spread over the taps."""
     for tap in range(taps.shape[0]):
@@ -88,17 +109,28 @@ def smear(source: FloatRow, taps: FloatRow, first: int, last: int, target: Float
             shifted[i] += share * source[i]
 
 
-@leaf_kernel
+@fused_kernel
 def add_up(tally: Tally, origin: int, mean: FloatRow) -> None:
-    """Write the photons of an origin to its pixel's row, the pulse's width included."""
-    taps, bins = tally.taps, mean.shape[0]
-    scale = np.float32(1.0 / tally.coarse.shape[0])
+    """Write the photons of an origin to its pixel's row, the pulse's width included.
+
+    Four taps at a time, so that the row is read and written less often.
+    """
+    fine, taps, bins = tally.fine[origin], tally.taps, mean.shape[0]
     first, last = lit_bins(tally, origin)
     mean[:] = 0.0
-    for tap in range(taps.shape[0]):
-        share, shifted = taps[tap] * scale, tally.fine[origin, tap:]
+    fours = taps.shape[0] // 4 * 4
+    for tap in range(0, fours, 4):
+        t0, t1, t2, t3 = taps[tap], taps[tap + 1], taps[tap + 2], taps[tap + 3]
+        f0, f1, f2, f3 = fine[tap:], fine[tap + 1 :], fine[tap + 2 :], fine[tap + 3 :]
+        for i in range(max(first - tap - 3, 0), min(last - tap, bins)):
+            mean[i] += t0 * f0[i] + t1 * f1[i] + t2 * f2[i] + t3 * f3[i]
+    for tap in range(fours, taps.shape[0]):
+        share, shifted = taps[tap], fine[tap:]
         for i in range(max(first - tap, 0), min(last - tap, bins)):
             mean[i] += share * shifted[i]
+    scale = np.float32(1.0 / tally.coarse.shape[0])
+    for i in range(bins):
+        mean[i] *= scale
 
 
 @leaf_kernel

@@ -20,6 +20,14 @@ from terrain.kernels import kernel, leaf_kernel
 LOST_CHANCE = 0.25
 
 
+class Course(NamedTuple):
+    """A track of a set, taken for a walk: its number, weight and first optical length."""
+
+    track: int
+    weight: float
+    optical: float
+
+
 class Tracks(NamedTuple):
     """Sets of tracks: of every replicate one for the light's way down, one for the way back.
 
@@ -62,7 +70,8 @@ def draw_tracks(
 ) -> Tracks:
     """Draw the tracks of a flash and order them by their paths to a ``depth`` [m].
 
-    In each set the first optical lengths are stratified.
+    In each set the first optical lengths are stratified. Tracks of equal paths, as those of all
+    light that has not scattered yet, stay in the order in which they were drawn.
     """
     result = np.empty((sets, tracks, legs, 4), np.float32)
     first_wide, reached = np.empty((sets, tracks), np.int64), np.empty(sets, np.int64)
@@ -85,7 +94,7 @@ def draw_tracks(
                 leg = unordered[j, k]
                 leg[0], leg[1], leg[2], leg[3] = dx, dy, dz, optical
             path[j] = path_to(depth * medium.scattering, unordered[j])
-        order = np.argsort(path)
+        order = np.argsort(path, kind="mergesort")
         reached[i] = np.isfinite(path).sum()
         for j in range(tracks):
             result[i, j] = unordered[order[j]]
@@ -94,8 +103,14 @@ def draw_tracks(
 
 
 @leaf_kernel
-def chosen(tracks: Tracks, which: int, place: float) -> tuple[int, float]:
-    """Return the track of a set at a ``place`` from 0 to 1, and its weight.
+def course(tracks: Tracks, which: int, track: int, weight: float) -> Course:
+    """Take a track of a set."""
+    return Course(track, weight, tracks.legs[which, track, 0, 3])
+
+
+@leaf_kernel
+def chosen(tracks: Tracks, which: int, place: float) -> Course:
+    """Take the track of a set at a ``place`` from 0 to 1.
 
     Tracks that do not reach the depth matter little: where they are few, they are chosen a quarter
     as often.
@@ -104,9 +119,9 @@ def chosen(tracks: Tracks, which: int, place: float) -> tuple[int, float]:
     rarely = max(LOST_CHANCE, (n - reached) / n)
     share = 1.0 - rarely * (n - reached) / n
     if place < share:
-        return int(place / share * reached), reached / (n * share)
+        return course(tracks, which, int(place / share * reached), reached / (n * share))
     lost = (place - share) / (1.0 - share)
-    return min(n - 1, reached + int(lost * (n - reached))), 1.0 / rarely
+    return course(tracks, which, min(n - 1, reached + int(lost * (n - reached))), 1.0 / rarely)
 
 
 @leaf_kernel

@@ -67,6 +67,6 @@ def test_no_two_walks_of_a_flash_draw_the_same_numbers(engine_of, nadir, monkeyp
     monkeypatch.setattr(engine_module, "see_all", pixels.see_all.py_func)
     for frame in (0, 1):
         engine.flash(pose=nadir, frame=frame)
-    assert len(set(addresses)) == len(addresses) == 2 * 2048 * 8
+    assert len(set(addresses)) == len(addresses) == 2 * 2048 * engine.settings.replicates
     assert {address[1] for address in addresses} == {PIXELS}
     assert PIXELS != TRACKS

@@ -127,12 +127,12 @@ def test_sets_are_different_and_repeatable(tracks, water):
 def test_every_track_counts_alike(reached):
     """Over all places the weights add up to 1/100 for each of 100 tracks, hence to one."""
     lost_rarely = Tracks(
-        np.empty((1, 100, 2, 4), np.float32), np.empty((1, 100), np.int64), np.array([reached])
+        np.zeros((1, 100, 2, 4), np.float32), np.empty((1, 100), np.int64), np.array([reached])
     )
     places = (np.arange(40_000) + 0.5) / 40_000
     found = [chosen(lost_rarely, 0, place) for place in places]
     expected = np.zeros(100)
-    for track, weight in found:
+    for track, weight, _ in found:
         expected[track] += weight / len(places)
     assert expected == pytest.approx(0.01, rel=0.02)
     assert expected.sum() == pytest.approx(1.0, rel=1e-3)

@@ -13,7 +13,9 @@ from survey.cloud.stitch import stitched
 from survey.mission import fly_frame
 from survey.preparation import Mission, prepare
 from survey.scenario.load import load_scenario
+from terrain.substrate import known_substrates
 
+SUBSTRATES = known_substrates()
 FloatArray = NDArray[np.float64]
 LESS_WORK = {"transport.walks_per_pixel": 32}
 BOTTOM = (PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT)
@@ -152,6 +154,28 @@ def test_area_survey_s_cross_line_agrees_with_the_lines_under_it() -> None:
         assert np.percentile(np.abs(bottom_errors(cloud)), 95.0) < 0.5
     biases = [np.median(bottom_errors(cloud)) for cloud in clouds]
     assert biases[0] == pytest.approx(biases[1], abs=0.15)
+
+
+def test_harbor_wreck_shows_sand_and_objects_and_loses_the_seagrass() -> None:
+    """Two frames with a quarter of the walks: cubes and free span, then the wreck."""
+    mission = prepare(load_scenario("harbor-wreck").replace(**{"transport.walks_per_pixel": 64}))
+    results = [fly_frame(mission, frame) for frame in mission.frames[1:3]]
+    cloud = PointCloud.concatenate([result.bottom for result in results])
+    found = np.concatenate([result.record.outcome.ravel() for result in results]) == Outcome.FOUND
+    made_of = {name: cloud.substrate == substrate.code for name, substrate in SUBSTRATES.items()}
+    assert found[made_of["sand"]].mean() > 0.9
+    assert found[made_of["seagrass"]].mean() < 0.25
+    objects = cloud.true_classification == PointClass.SUBMERGED_OBJECT
+    wreck = objects & made_of["steel"]
+    pipe_and_cubes = objects & made_of["concrete"]
+    assert np.array_equal(objects, wreck | pipe_and_cubes)
+    called = cloud.classification == PointClass.SUBMERGED_OBJECT
+    assert called[wreck].mean() > 0.5
+    cube = pipe_and_cubes & (np.abs(cloud.truth[:, 2] + 2.0) < 0.2)
+    assert 3 < cube.sum() < 12
+    assert called[cube].mean() > 0.5
+    errors = (cloud.position[:, 2] - cloud.true_elevation)[found & made_of["sand"] & ~objects]
+    assert np.median(errors) == pytest.approx(-0.2, abs=0.1)
 
 
 @pytest.mark.slow

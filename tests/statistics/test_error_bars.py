@@ -1,6 +1,6 @@
 """Do the standard errors that the engine states cover what happens?
 
-Flashes of one scene differ by chance alone. The 95 % interval of a flash, by Student's t of seven
+Flashes of one scene differ by chance alone. The 95 % interval of a flash, by Student's t of three
 degrees of freedom, should hold the mean of all flashes in 95 % of them; 92.7 to 97.3 % is the
 99.9 % band of 1,000 flashes. Error bars a fifth too small would cover 90 %, which 1,000 flashes
 tell from 95 % with 99 % power.
@@ -23,7 +23,7 @@ from tests.physics.conftest import level_pose, make_engine
 
 COLUMN, BOTTOM = 0, 1
 LIKELIHOOD, LOWEST, HIGHEST = 0.95, 0.927, 0.973
-GATE = 10
+GATE, FREEDOM = 10, 3
 SCENES = {
     "coastal": {"water": "coastal", "depth": 10.0},
     "clear": {"water": "clear", "depth": 20.0},
@@ -42,7 +42,7 @@ def fly(flashes, **scene):
 
 def covered(light, error):
     """Return how often an interval holds the mean of all flashes, pixel by pixel."""
-    half_width = t.ppf(0.5 + 0.5 * LIKELIHOOD, 7) * error
+    half_width = t.ppf(0.5 + 0.5 * LIKELIHOOD, FREEDOM) * error
     return (np.abs(light - light.mean(axis=0)) < half_width).mean(axis=0)
 
 

@@ -135,6 +135,7 @@ def _cloud(
         truth=truth,
         classification=classes.astype(np.uint8),
         true_classification=classes.astype(np.uint8),
+        substrate=(np.arange(n) % 3).astype(np.uint8),
         true_elevation=Survey.elevation_at(position[:, 0], position[:, 1]),
         time=np.full(n, frame.time),
         depth=np.maximum(0.25 - position[:, 2], 0.0),

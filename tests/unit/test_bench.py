@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 
 from survey import bench, bench_scaling
 from survey.cli import app
+from survey.transport.settings import TransportSettings
 
 RUN = CliRunner()
 SMALL = {"camera.rows": 4, "camera.columns": 8}
@@ -54,7 +55,8 @@ def test_merit_goes_with_its_case_alone(small_bench, monkeypatch):
 
 def test_cases_have_whole_replicates():
     assert set(bench.CASES) == {"clear 20 m", "coastal 10 m", "coastal 20 m", "harbor 4 m"}
-    assert all(case.walks_per_pixel % 8 == 0 for case in bench.CASES.values())
+    replicates = TransportSettings().replicates
+    assert all(case.walks_per_pixel % replicates == 0 for case in bench.CASES.values())
 
 
 def test_gate_error_is_the_scatter_of_the_sum_in_the_gate():

@@ -13,6 +13,7 @@ from scipy.constants import speed_of_light
 
 from survey.cloud.points import Outcome, PointClass
 from survey.cloud.truth import TrueTargets, outcomes
+from terrain.substrate import known_substrates
 
 Looks = Callable[..., Any]
 
@@ -47,12 +48,29 @@ def test_targets_on_a_wreck_are_objects(look_at: Looks) -> None:
     assert look.targets.depth[deck] == pytest.approx(6.4)
 
 
+def test_targets_bear_the_label_of_the_face_they_meet_under_water_and_on_land(
+    look_at: Looks,
+) -> None:
+    bed = look_at(depth=0.0, gradient=0.11, heading_deg=90.0).seabed
+    box = trimesh.creation.box(extents=(12.0, 12.0, 2.0))
+    box.apply_translation([60.0, -20.0, -3.0])
+    sand, steel = known_substrates()["sand"], known_substrates()["steel"]
+    bed = bed.painted(slice(None), sand).with_object(box, reflectance=0.1, source="A box.")
+    bed = bed.painted(bed.is_object, steel)
+    targets = look_at(seabed=bed, heading_deg=90.0).targets
+    hit = targets.classification == PointClass.SUBMERGED_OBJECT
+    assert 20 < hit.sum() < 200
+    assert (targets.depth < 0.0).any()
+    assert np.all(targets.substrate == np.where(hit, steel.code, sand.code))
+
+
 def test_a_ray_beside_the_seabed_has_no_target(look_at: Looks) -> None:
     bed = look_at(gradient=0.0).seabed
     mesh = bed.mesh.copy()
     mesh.apply_translation([200.0, 0.0, 0.0])
     targets = look_at(seabed=replace(bed, mesh=mesh), heading_deg=90.0).targets
     beside = np.isnan(targets.depth)
+    assert not targets.substrate.any()
     assert 500 < beside.sum() < 1500
     assert np.array_equal(np.isnan(targets.position[..., 2]), beside)
     assert not np.isfinite(targets.time[beside]).any()
@@ -66,6 +84,7 @@ def one_pixel(depth: float, time: float, kind: PointClass) -> TrueTargets:
         time=np.full((1, 1), time),
         depth=np.full((1, 1), depth),
         classification=np.full((1, 1), kind, np.uint8),
+        substrate=np.zeros((1, 1), np.uint8),
     )
 
 

@@ -129,7 +129,7 @@ def test_extra_bytes_are_described(small_survey: Any, tmp_path: Path) -> None:
     extra = {dimension.name: dimension for dimension in las.point_format.extra_dimensions}
     wanted = ["frame", "pixel_row", "pixel_column", "depth_m", "snr", "counts"]
     wanted += [f"{kind}_{axis}" for kind in ("uncorrected", "true") for axis in "xyz"]
-    assert list(extra) == [*wanted, "true_elevation", "true_class"]
+    assert list(extra) == [*wanted, "true_elevation", "true_class", "substrate"]
     assert all(4 < len(dimension.description) <= 32 for dimension in extra.values())
 
 

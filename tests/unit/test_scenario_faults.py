@@ -40,7 +40,7 @@ def faults_of(tables: dict[str, Any], **changes: Any) -> tuple[str, ...]:
             "seabed.kind",
             "plain",
             "seabed.kind: 'plain' is not one of raster, points, mesh, plane, slope, sandbar, "
-            "channel, rough. Did you mean 'plane'?",
+            "channel, ripples, reef, rough. Did you mean 'plane'?",
         ),
         ("seabed.kind", None, "seabed.kind: missing. Say which kind it is."),
         ("seabed.depht_m", 3, "seabed.depht_m: unknown key. Did you mean 'depth_m'?"),
@@ -156,7 +156,8 @@ def test_faults_of_objects_name_the_object(tables: dict[str, Any]) -> None:
     ]
     assert faults_of(tables) == (
         "reef.toml: seabed.objects.0.lenght_m: unknown key. Did you mean 'length_m'?",
-        "reef.toml: seabed.objects.1.kind: 'boat' is not one of wreck, boulder, cube, mesh.",
+        "reef.toml: seabed.objects.1.kind: 'boat' is not one of wreck, boulder, boulders, "
+        "cube, pipeline, mesh.",
     )
 
 

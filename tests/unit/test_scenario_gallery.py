@@ -45,7 +45,7 @@ def test_every_scenario_is_sound_and_says_what_to_expect(name: str) -> None:
 
 def test_the_gallery_is_complete() -> None:
     names = {"measured-seabed", "sandbar", "wreck", "turned-footprint", "too-deep"}
-    names |= {"rolling-aircraft", "area-survey"}
+    names |= {"rolling-aircraft", "area-survey", "harbor-wreck"}
     assert names | PAPER.keys() <= gallery().keys()
 
 
@@ -129,6 +129,28 @@ def test_wreck_lies_under_the_flight() -> None:
     seen = np.array(outlines_on_map(scenario)).reshape(-1, 2)
     assert (seen.min(axis=0) < place - 20.0).all()
     assert (seen.max(axis=0) > place + 20.0).all()
+
+
+def test_harbor_wreck_s_line_sees_all_that_its_basin_is_made_of() -> None:
+    scenario = load_scenario("harbor-wreck")
+    seabed = components.seabed(scenario)
+    outline = np.concatenate(outlines_on_map(scenario)) - seabed.map_frame.origin[:2]
+    centre = seabed.mesh.triangles_center[:, :2]
+    seen = ((centre > outline.min(axis=0)) & (centre < outline.max(axis=0))).all(axis=1)
+    area = {
+        name: float(seabed.mesh.area_faces[seen & (seabed.substrate == code)].sum())
+        for code, name in seabed.substrate_names.items()
+    }
+    assert set(area) == {"sand", "seagrass", "rock", "steel", "concrete"}
+    assert area["sand"] > 2500.0
+    assert area["seagrass"] > 500.0
+    assert area["rock"] > 400.0
+    cubes = [part for part in scenario.seabed.objects if part.kind == "cube"]
+    tops = [
+        float(seabed.elevation_at(*(np.array([c.easting_m, c.northing_m]) - [5e5, 6e6])))
+        for c in cubes
+    ]
+    assert tops == pytest.approx([-4.0 + cube.side_m for cube in cubes], abs=0.3)
 
 
 @pytest.mark.parametrize(("name", "water"), PAPER.items())

@@ -35,6 +35,15 @@ MADE: dict[str, dict[str, Any]] = {
         "side_slope_deg": 10.0,
     },
     "rough": {"depth_m": 5.0},
+    "ripples": {"depth_m": 6.0, "wavelength_m": 8.0, "height_m": 0.6, "crest_deg": 20.0},
+    "reef": {
+        "depth_m": 9.0,
+        "reef_depth_m": 3.0,
+        "reef_easting_m": 500300.0,
+        "reef_northing_m": 6000700.0,
+        "reef_heading_deg": 20.0,
+        "top_width_m": 30.0,
+    },
 }
 
 
@@ -119,6 +128,7 @@ def written_raster(folder: Path) -> Path:
         count=1,
         dtype="float64",
         crs="EPSG:25832",
+        nodata=-9999.0,
         transform=Affine(5.0, 0.0, 500000.0, 0.0, -5.0, 6001000.0),
     ) as raster:
         raster.write(elevation, 1)

@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 import trimesh
 
+from terrain.bedforms import ripples
+from terrain.boulder_field import BoulderField
+from terrain.generators import Ground
+from terrain.map_frame import MapFrame
+from terrain.objects import cube, place, wreck
+from terrain.pipeline import FreeSpan, pipeline
 from terrain.raycast import build_grid, cast_rays
+from terrain.roughness import Roughness
+from terrain.seabed import Seabed
 
 DOWN = np.array([0.0, 0.0, -1.0])
 
@@ -49,6 +57,60 @@ def test_agrees_with_embree_on_a_rough_seabed_with_a_wreck() -> None:
     corners, normals = mesh.triangles[face[hit], 0], mesh.face_normals[face[hit]]
     points = origins[hit] + t[hit, None] * directions[hit]
     assert np.abs(((points - corners) * normals).sum(axis=1)).max() < 1e-9
+
+
+def cluttered_seabed() -> Seabed:
+    """A rippled, rough bed with all that overhangs: wreck, free-spanning pipe, boulders, cubes."""
+    frame = MapFrame(easting=5e5, northing=6e6, epsg=25832, vertical_epsg=5714)
+    relief = Roughness(rms=0.1, spectral_slope=3.0, longest_wavelength=10.0, seed=2)
+    ground = Ground(map_frame=frame, length=80.0, width=80.0, reflectance=0.1, roughness=relief)
+    bed = ripples(ground=ground, depth=8.0, wavelength=6.0, height=0.4, spacing=0.25)
+    field = BoulderField(
+        length=60.0, width=60.0, density=0.01, least_diameter=0.5, mean_diameter=1.0,
+        largest_diameter=3.0, burial=0.2, relief=0.15, seed=1,
+    )  # fmt: skip
+    route = np.array([[-35.0, -30.0], [0.0, -12.0], [35.0, -10.0]])
+    spans = [FreeSpan(start=20.0, length=25.0, gap=1.0)]
+    bodies = [
+        place(wreck(), seabed=bed, east=5.0, north=12.0, heading=0.6, list_angle=0.4, burial=0.3),
+        pipeline(seabed=bed, route=route, diameter=0.6, spans=spans),
+        field.bodies(seabed=bed, east=0.0, north=0.0),
+        *(place(cube(side=side), seabed=bed, east=-20.0, north=15.0 * side) for side in (1.0, 2.0)),
+    ]
+    for body in bodies:
+        bed = bed.with_object(body, reflectance=0.1, source="")
+    return bed
+
+
+@pytest.mark.parametrize("count", [50_000, pytest.param(1_000_000, marks=pytest.mark.slow)])
+def test_agrees_with_embree_under_overhangs(count: int) -> None:
+    """Faces and distances, from above and from inside the clutter; Embree is single precision.
+
+    Where the two differ the ray grazes an edge: they may take either of two faces that meet there,
+    or one of them the silhouette and the other what lies behind.
+    """
+    embree = pytest.importorskip("trimesh.ray.ray_pyembree")
+    rng = np.random.default_rng(7)
+    bed = cluttered_seabed()
+    origins = rng.uniform([-39, -39, -7.9], [39, 39, 0], size=(count, 3))
+    directions = unit_vectors(rng, count)
+    directions[: count // 2, 2] = -np.abs(directions[: count // 2, 2])
+    t, face = cast_rays(bed.grid, origins, directions)
+    theirs = embree.RayMeshIntersector(bed.mesh).intersects_first(origins, directions)
+    assert 0.5 < (face >= 0).mean() < 0.95
+    on_objects = face[face >= 0]
+    assert bed.is_object[on_objects].mean() > 0.02
+    down = bed.grid.normals[on_objects, 2] < -0.1
+    assert (down & bed.is_object[on_objects]).sum() > 1e-3 * count  # seen from below
+    differing = np.flatnonzero(face != theirs)
+    assert len(differing) < 2e-4 * count
+    both = differing[(face[differing] >= 0) & (theirs[differing] >= 0)]
+    normal, corner = bed.grid.normals[theirs[both]], bed.grid.corners[theirs[both], 0]
+    along = ((corner - origins[both]) * normal).sum(axis=1) / (directions[both] * normal).sum(
+        axis=1
+    )
+    apart = np.abs(along - t[both]) > 1e-3
+    assert len(differing) - len(both) + apart.sum() < 2e-5 * count
 
 
 @pytest.mark.parametrize("tilt", [0.0, 0.7, 1.3])

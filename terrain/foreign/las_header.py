@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from pathlib import Path
 
-from terrain.file_faults import SeabedFileError
+from terrain.foreign.faults import ReaderError
 
 SMALLEST_HEADER = 227  # [bytes] of LAS 1.0 to 1.2
 HEADER_OF_1_4 = 375  # [bytes]
@@ -24,17 +24,17 @@ def require_plausible_header(path: Path) -> None:
 
     Raises
     ------
-    SeabedFileError
+    ReaderError
         When it is no LAS file or the header contradicts the size of the file.
     """
     size = path.stat().st_size
     with path.open("rb") as source:
         head = source.read(HEADER_OF_1_4)
     if head[:4] != b"LASF" or len(head) < SMALLEST_HEADER:
-        raise SeabedFileError(f"{path}: not a readable LAS or LAZ file. it has no LAS header")
+        raise ReaderError("not a readable LAS or LAZ file. it has no LAS header")
     if not _fits(head, size):
-        raise SeabedFileError(
-            f"{path}: not a readable LAS or LAZ file. the sizes in its header contradict its "
+        raise ReaderError(
+            "not a readable LAS or LAZ file. the sizes in its header contradict its "
             f"{size} bytes. it may be cut short: fetch it again"
         )
 

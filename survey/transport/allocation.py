@@ -1,0 +1,99 @@
+"""How many light paths each pixel gets: more where fewer of them come from lit water.
+
+At the edge of the lit area the light of a pixel comes from one side alone: half of its paths begin
+in the dark, and the others tell its brightness with less certainty. An equal error in all pixels
+costs least when paths are shared out by the standard deviation of one.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from survey.transport.beam import light_on_water
+from survey.transport.launch import Optics, direction_of
+from survey.transport.scene import Scene
+from survey.transport.tracks import Tracks
+from terrain.kernels import kernel, leaf_kernel
+
+FloatArray = NDArray[np.float64]
+
+PILOTS = 64
+SPREAD = 0.1
+"""Relative variance of the light of one path that begins in lit water, as measured [1]."""
+
+
+@leaf_kernel
+def stray_at(depth: float, legs: NDArray[np.float32]) -> tuple[float, float]:
+    """How far a track strays from its first leg's line where it has a depth, in scatterings."""
+    x = y = reached = 0.0
+    for k in range(legs.shape[0]):
+        sinking, length = legs[k, 2], legs[k, 3]
+        if reached + sinking * length >= depth:
+            length = (depth - reached) / sinking
+            return x + legs[k, 0] * length, y + legs[k, 1] * length
+        x, y = x + legs[k, 0] * length, y + legs[k, 1] * length
+        reached += sinking * length
+    return x, y
+
+
+@kernel
+def strays(tracks: Tracks, depth: float, scattering: float) -> FloatArray:
+    """Return how far light strays on its way down and back up (pilots, 2) [m].
+
+    Pairs of tracks of the first two sets, spread evenly over those that get down to the depth.
+    """
+    result = np.zeros((PILOTS, 2))
+    if scattering == 0.0 or tracks.reached[0] == 0 or tracks.reached[1] == 0:
+        return result
+    for i in range(PILOTS):
+        down = (2 * i + 1) * tracks.reached[0] // (2 * PILOTS)
+        back = (2 * (i * 19 % PILOTS) + 1) * tracks.reached[1] // (2 * PILOTS)
+        east, north = stray_at(depth * scattering, tracks.legs[0, down])
+        x, y = stray_at(depth * scattering, tracks.legs[1, back])
+        result[i, 0], result[i, 1] = (east + x) / scattering, (north + y) / scattering
+    return result
+
+
+@kernel
+def deviations(scene: Scene, optics: Optics, strayed: FloatArray, isolated: bool) -> FloatArray:
+    """Return the relative standard deviation of one light path in every pixel (pixels,).
+
+    Of the paths that begin where the pixel's ray enters the water and stray a share p begins in
+    lit water: the variance is (1 - p) / p and that of lit paths. Departure: rays and strays are
+    taken as on level ground of the mean depth, strays as if light came down vertically.
+    """
+    level, height = scene.sea.level, optics.position[2] - scene.sea.level
+    result = np.empty(optics.rows * optics.columns)
+    for pixel in range(len(result)):
+        row = 2.0 * (pixel // optics.columns + 0.5) / optics.rows - 1.0
+        column = 2.0 * (pixel % optics.columns + 0.5) / optics.columns - 1.0
+        if optics.columns_forward:
+            forward, right = -column * optics.half_forward, row * optics.half_right
+        else:
+            forward, right = -row * optics.half_forward, column * optics.half_right
+        dx, dy, dz, _ = direction_of(optics, forward, right)
+        lit = 0
+        if dz < 0.0:
+            x = optics.position[0] - dx / dz * height
+            y = optics.position[1] - dy / dz * height
+            for i in range(len(strayed)):
+                east, north = x + strayed[i, 0], y + strayed[i, 1]
+                lit += light_on_water(optics, level, east, north, pixel, isolated) > 0.0
+        share = max(lit, 1) / len(strayed)
+        result[pixel] = math.sqrt((1.0 - share) / share + SPREAD)
+    return result
+
+
+def walks_of_pixels(deviation: FloatArray, *, mean: int) -> NDArray[np.int64]:
+    """Share out walks by the standard deviation of one; at least one a pixel.
+
+    Examples
+    --------
+    >>> walks_of_pixels(np.array([1.0, 1.0, 4.0]), mean=10)
+    array([ 5,  5, 20])
+    """
+    shares = deviation / deviation.mean()
+    return np.asarray(np.maximum(np.rint(mean * shares), 1.0), np.int64)
