@@ -38,6 +38,7 @@ def bottomless(tmp_path_factory: pytest.TempPathFactory) -> Mission:
         "water": {"type": "coastal"},
         "surface": {"water_level_m": 0.0, "wind_speed_m_s": 6.0},
         "seabed": {"kind": "plane", "depth_m": 60.0, "margin_m": 300.0},
+        "transport": {"walks_per_pixel": 512, "tracks_per_replicate": 4096},
     }
     folder = tmp_path_factory.mktemp("deep")
     return prepare(Scenario.from_tables(tables, name="deep.toml", folder=folder))
