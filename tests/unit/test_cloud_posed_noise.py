@@ -82,7 +82,7 @@ def test_light_comes_when_and_as_strong_as_expected(
     assert np.abs(level.argmax(axis=-1) - seen.argmax(axis=-1)).max() > 5
     bins = np.arange(expected.shape[-1])
     after = (bins > seen.argmax(axis=-1)[..., None] + 15) & (seen > 0.05)
-    assert (expected * after).sum() == pytest.approx((seen * after).sum(), rel=0.05)
+    assert (expected * after).sum() == pytest.approx((seen * after).sum(), rel=0.02)
     by_pixel = (expected * after).sum(axis=-1) / (seen * after).sum(axis=-1)
     assert 0.7 < np.percentile(by_pixel, 5) < np.percentile(by_pixel, 95) < 1.4
 
