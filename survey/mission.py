@@ -42,7 +42,11 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
         expected_level=engine.surface.level,
         refractive_index=water.refractive_index,
     )
-    bottom = last_echo(counts=readings.counts, noise=noise, surface_time=line.surface_time)
+    bottom = last_echo(
+        counts=readings.counts,
+        noise=noise.of_flash(waveforms.variance[:2].sum(axis=0)),
+        surface_time=line.surface_time,
+    )
 
     targets = true_targets(
         seabed=mission.seabed,

@@ -22,6 +22,7 @@ FloatArray = NDArray[np.float64]
 Readout = NDArray[np.floating | np.integer]
 
 NEIGHBOURS = 9
+DOUBTFUL = 3.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,6 +60,9 @@ class NoiseModel:
         Readings of the gate that is centred on the bin, over water without a bottom.
     surface_threshold, bottom_threshold : array
         n_L of that gate.
+    doubt : array or float
+        What a gate must hold above ``bottomless`` for the Monte Carlo error of the flash itself,
+        see `of_flash`.
     gate_bins : int
         Bins of a gate, odd.
     pulse : array (taps,)
@@ -82,6 +86,7 @@ class NoiseModel:
     pulse: FloatArray
     bin_start: float
     bin_width: float
+    doubt: FloatArray | float = 0.0
     surface_walk: FloatArray | float = 0.0
 
     @classmethod
@@ -131,6 +136,22 @@ class NoiseModel:
             bin_start=bin_start,
             bin_width=bin_width,
         )
+
+    def of_flash(self, variance: FloatArray) -> NoiseModel:
+        """Return the model with the doubt of a flash whose light without a bottom errs so.
+
+        One path of light, rare and bright, stands out like a bottom, beyond what the mean error of
+        many pixels lets expect. The error of its own pixel and bins is then as large as the light:
+        of n replicates one that holds it makes an excess of one standard error, two of four 1.7.
+
+        Parameters
+        ----------
+        variance : array (rows, columns, bins)
+            Squared Monte Carlo error of the flash's photo-electrons, those of the bottom left out.
+        """
+        error = np.sqrt(variance, dtype=np.float64)
+        uncertain = _reading_error(self.detector, self.bottomless_light, error, self.bottomless)
+        return replace(self, doubt=DOUBTFUL * gate_sums(uncertain, self.gate_bins))
 
 
 def gate_sums(counts: Readout, gate_bins: int) -> FloatArray:

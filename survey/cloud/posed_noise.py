@@ -44,7 +44,7 @@ class PosedNoise:
     variance : array (rows, columns, bins)
         Squared Monte Carlo error of a flash.
     build : callable
-        From light and variance to a noise model.
+        From light, without sun and darkness, and variance to a noise model.
     """
 
     level: NoiseModel
@@ -71,7 +71,7 @@ class PosedNoise:
         )
         variance = nearer**2 * delayed(self.variance, late / width)
         walk = np.broadcast_to(self.level.surface_walk, self.camera.shape)[row, column]
-        noise = self.build(light + self.level.steady_light, variance)
+        noise = self.build(light, variance)
         return replace(noise, surface_walk=walk)
 
     def _height(self, pose: Pose) -> float:

@@ -91,7 +91,8 @@ def last_echo(*, counts: Readout, noise: NoiseModel, surface_time: FloatArray) -
     begin = surface_bin.astype(np.int64) + int(GUARD_GATES * noise.gate_bins)
     sums, expected = (gate_sums(each, noise.gate_bins) for each in (counts, noise.bottomless))
     searched = (bins >= begin[..., None]) & ~dry[..., None]
-    fires = (sums >= noise.bottom_threshold) & searched
+    sure = (sums >= noise.bottom_threshold) & (sums - expected >= noise.doubt)
+    fires = sure & searched
     holds = (sums >= 0.5 * (expected + noise.bottom_threshold)) & searched
     last = _last_run(fires, holds)
     peak = np.where(last, sums - expected, -np.inf).argmax(axis=-1)

@@ -76,6 +76,20 @@ class Facet(NamedTuple):
     density: float
 
 
+class Sent(NamedTuple):
+    """What the laser sends along a track to a place: ``light`` [1/m2] and lengths [m].
+
+    ``in_air``, how much ``deeper`` the track goes for its tilt, the ``straight`` way in the water,
+    and the ``lift`` of the wave above mean level where the track enters.
+    """
+
+    light: float
+    in_air: float
+    deeper: float
+    straight: float
+    lift: float
+
+
 class Place(NamedTuple):
     """Where a walk touches the bottom: ``gain`` is its importance times reflectance over pi."""
 
@@ -105,27 +119,27 @@ def light_sent(
     slope_y: float,
     facet: Facet,
     deepening: float,
-) -> tuple[float, float, float, float]:
-    """Return what the laser sends along a track to a place [1/m2], the way in air, how much deeper.
+) -> Sent:
+    """Return what the laser sends along a track to a place.
 
-    The track goes (``east``, ``north``) sideways to the place's ``depth``. Where it enters is where
-    the flat surface's ray does, but for what it strays from that ray; neighbours part with depth,
-    and what strays does less so at the surface. The ray that enters there leans the other way: it
-    tilts the track, which is then somewhat deeper [m] and, on what goes through the place by
-    (``slope_x``, ``slope_y``) per metre of depth, thinned further. Departure: to first order, and
-    as if neighbours parted alike in all directions.
+    The track goes (``east``, ``north``) sideways to the place's ``depth``. Laid to the place it
+    would begin somewhat ``aside`` of where the ray enters whose direction it has. The ray that
+    enters there leans the other way, the more so the shallower neighbours part: it tilts the track,
+    which then begins nearer, goes somewhat deeper and, on what passes through the place by
+    (``slope_x``, ``slope_y``) per metre of depth, is thinned further. Departure: to first order, as
+    if neighbours parted alike in all directions, and no more than doubled.
 
-    Last comes how high above mean level [m] the wave stands where the track enters. It slides there
-    along what goes through the place: the light slides over a fixed place, which then is deeper
-    under the wave (``deepening`` 1), or a place of fixed depth over its light (0).
+    Where a wave stands at the entry the track slides there along what goes through the place: the
+    light slides over a fixed place, which then is deeper under the wave (``deepening`` 1), or a
+    place of fixed depth over its light (0).
     """
     spread_r, spread_t = 1.0 + depth * ray.radial, 1.0 + depth * ray.tangential
     thinned = 1.0 / (spread_r * spread_t)
     shrink = math.sqrt(thinned)
-    flat_x, flat_y = depth * ray.slope_x, depth * ray.slope_y
-    stray_x, stray_y = east - flat_x, north - flat_y
-    px, py = x - flat_x - stray_x * shrink, y - flat_y - stray_y * shrink
+    aside_x, aside_y = x - east - ray.x, y - north - ray.y
+    px, py = ray.x + aside_x * shrink, ray.y + aside_y * shrink
     lean = 0.5 * (ray.radial + ray.tangential) * shrink
+    stray_x, stray_y = east - depth * ray.slope_x, north - depth * ray.slope_y
     thinned *= min(2.0, max(0.0, 1.0 - lean * (stray_x * slope_x + stray_y * slope_y)))
     level, lift = scene.sea.level, 0.0
     if scene.wavy:
@@ -136,7 +150,7 @@ def light_sent(
         thinned /= (spread_r + deeper_by * ray.radial) * (spread_t + deeper_by * ray.tangential)
     light = light_on_water(optics, level, px, py, sight.pixel, method.isolated)
     if light == 0.0:
-        return 0.0, 0.0, 0.0, lift
+        return Sent(0.0, 0.0, 0.0, 0.0, lift)
     dx, dy, dz = px - optics.position[0], py - optics.position[1], level - optics.position[2]
     in_air = math.sqrt(dx * dx + dy * dy + dz * dz)
     if scene.bounds.highest > scene.waves.lowest:
@@ -145,8 +159,11 @@ def light_sent(
             dx / in_air, dy / in_air, dz / in_air, in_air,
         )  # fmt: skip
         if face >= 0:
-            return 0.0, 0.0, 0.0, lift
-    return light * thinned, in_air, lean * (stray_x * stray_x + stray_y * stray_y), lift
+            return Sent(0.0, 0.0, 0.0, 0.0, lift)
+    deeper = -lean * (aside_x * stray_x + aside_y * stray_y)
+    down = depth + deepening * lift
+    straight = math.sqrt((x - px) ** 2 + (y - py) ** 2 + down * down)
+    return Sent(light * thinned, in_air, deeper, straight, lift)
 
 
 @inlined_kernel
@@ -197,7 +214,7 @@ def add_bottom(
     if facing <= 0.0 or abs(dz) < FLATTEST:
         return
     east, north = leg[0] + dx * along, leg[1] + dy * along
-    light, in_air, deeper, lift = light_sent(
+    light, in_air, deeper, straight, lift = light_sent(
         scene, optics, method, sight, ray, place.x, place.y, scene.sea.level - place.z,
         east, north, dx / -dz, dy / -dz, facet, 1.0,
     )  # fmt: skip
@@ -212,7 +229,7 @@ def add_bottom(
         scene, tally, legs, along, place.x - east, place.y - north, scene.sea.level + lift
     ):
         return
-    path += along - min(deeper / -dz, along)
+    path = max(path + along + deeper / dz, straight)
     whole = path + place.path
     photons = method.photons * strength * light * facing / abs(dz) * place.gain
     deposit(
@@ -253,7 +270,7 @@ def add_column(
         if cosine >= method.split_cosine:
             continue
         x, y = back[0] + back[3] * to, back[1] + back[4] * to
-        light, in_air, deeper, lift = light_sent(
+        light, in_air, deeper, _, lift = light_sent(
             scene, optics, method, sight, ray, x, y, depth, east, north,
             -back[3] * back[8], -back[4] * back[8], facet, 0.0,
         )  # fmt: skip
@@ -272,7 +289,7 @@ def add_column(
         at = max(0.0, 0.5 * (cosine + 1.0) * (table.shape[0] - 1))
         entry = min(int(at), table.shape[0] - 2)
         density = table[entry] + (at - entry) * (table[entry + 1] - table[entry])
-        whole = path + along + back[7] + to - deeper * back[8]
+        whole = path + along + back[7] + max(0.0, to - deeper * back[8])
         photons = method.photons * strength * light * sight.importance * abs(back[8])
         photons *= medium.scattering * method.spacing * density
         deposit(

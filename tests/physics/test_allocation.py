@@ -40,12 +40,12 @@ def test_pixels_at_the_edge_are_less_certain():
     optics = kernel_optics(camera=engine.camera, receiver=engine.receiver, pose=pose)
     pixel = engine.camera.pixel_tangent * 200.0
     aside = np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]) * pixel
-    found = deviations(engine._scene(pose), optics, aside, False).reshape(16, 32)
+    found = deviations(engine._scene(pose, 0.0), optics, aside, False).reshape(16, 32)
     inside, edge, corner = (np.sqrt(odds + SPREAD) for odds in (0.0, 1.0 / 3.0, 1.0))
     assert found[1:-1, 1:-1] == pytest.approx(inside)
     assert found[0, 1:-1] == pytest.approx(edge)
     assert found[0, 0] == pytest.approx(corner)
-    alone = deviations(engine._scene(pose), optics, aside, True)
+    alone = deviations(engine._scene(pose, 0.0), optics, aside, True)
     assert alone == pytest.approx(alone[0])
 
 

@@ -157,8 +157,8 @@ def test_area_survey_s_cross_line_agrees_with_the_lines_under_it() -> None:
 
 
 def test_harbor_wreck_shows_sand_and_objects_and_loses_the_seagrass() -> None:
-    """Two frames with a quarter of the walks: cubes and free span, then the wreck."""
-    mission = prepare(load_scenario("harbor-wreck").replace(**{"transport.walks_per_pixel": 64}))
+    """Two frames: cubes and free span, then the wreck."""
+    mission = prepare(load_scenario("harbor-wreck"))
     results = [fly_frame(mission, frame) for frame in mission.frames[1:3]]
     cloud = PointCloud.concatenate([result.bottom for result in results])
     found = np.concatenate([result.record.outcome.ravel() for result in results]) == Outcome.FOUND
