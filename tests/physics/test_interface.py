@@ -139,13 +139,15 @@ def test_a_ray_from_behind_catches_nothing():
 
 
 def test_rising_rays_meet_facets_that_throw_them_down():
-    """A facet that a rising ray would miss, or that would send it up again, counts as level."""
-    level = (0.0, 0.0, 1.0)
+    """A facet that a rising ray would miss, or that would send it out again, counts as smooth."""
+    level, still = (0.0, 0.0, 1.0), (0.0, 0.0)
     tilted = (math.sin(0.3), 0.0, math.cos(0.3))
-    assert facing_from_below(0.0, 0.0, 1.0, *tilted) == tilted
-    assert facing_from_below(-0.99, 0.0, math.sqrt(1 - 0.99**2), *tilted) == level
-    assert facing_from_below(math.cos(0.2), 0.0, math.sin(0.2), *tilted) == tilted
-    assert facing_from_below(-math.sin(1.2), 0.0, math.cos(1.2), *tilted) == level
+    assert facing_from_below(0.0, 0.0, 1.0, *tilted, *still) == tilted
+    assert facing_from_below(-0.99, 0.0, math.sqrt(1 - 0.99**2), *tilted, *still) == level
+    assert facing_from_below(math.cos(0.2), 0.0, math.sin(0.2), *tilted, *still) == tilted
+    assert facing_from_below(-math.sin(1.2), 0.0, math.cos(1.2), *tilted, *still) == level
+    wave = facing_from_below(-0.99, 0.0, math.sqrt(1 - 0.99**2), *tilted, -math.tan(0.1), 0.0)
+    assert wave == pytest.approx((math.sin(0.1), 0.0, math.cos(0.1)))
 
 
 def test_glint_equals_the_closed_form():
