@@ -89,7 +89,7 @@ def prepare(scenario: Scenario) -> Mission:
         detector=components.detector(scenario),
         seabed=seabed,
         engine=_engine(scenario, seabed, surface),
-        posed_noise=posed_noise(scenario, frames[0]),
+        posed_noise=posed_noise(scenario, frames[0], surface),
         products=ProductSettings(
             title=scenario.mission.title,
             description=scenario.mission.description,
@@ -107,14 +107,14 @@ def prepare(scenario: Scenario) -> Mission:
     )
 
 
-def posed_noise(scenario: Scenario, frame: Frame) -> PosedNoise:
+def posed_noise(scenario: Scenario, frame: Frame, sea: SeaSurface) -> PosedNoise:
     """Return what a flash reads over water without a bottom, and the thresholds above it.
 
     The expected column is that of the scenario's water, from flashes of its own over a bottom that
     nothing can reach; a survey would know it from its deep water. Of resolved waves it knows the
     slopes' statistics alone: all of them stand on the mean level.
     """
-    level_sea = replace(components.sea_surface(scenario), waves=None)
+    level_sea = replace(sea, waves=None)
     engine = _engine(scenario, _unreachable_bottom(scenario), level_sea)
     pose = Pose(
         position=np.array([0.0, 0.0, frame.measured.position[2]]),
