@@ -13,30 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.transport.beam import light_on_water
-from survey.transport.launch import Optics, direction_of
+from survey.transport.launch import Optics, direction_of, tangents_at
 from survey.transport.scene import Scene
-from survey.transport.tracks import Tracks
-from terrain.kernels import kernel, leaf_kernel
+from survey.transport.tracks import Tracks, way_to
+from terrain.kernels import kernel
 
 FloatArray = NDArray[np.float64]
 
 PILOTS = 64
 SPREAD = 0.1
 """Relative variance of the light of one path that begins in lit water, as measured [1]."""
-
-
-@leaf_kernel
-def stray_at(depth: float, legs: NDArray[np.float32]) -> tuple[float, float]:
-    """How far a track strays from its first leg's line where it has a depth, in scatterings."""
-    x = y = reached = 0.0
-    for k in range(legs.shape[0]):
-        sinking, length = legs[k, 2], legs[k, 3]
-        if reached + sinking * length >= depth:
-            length = (depth - reached) / sinking
-            return x + legs[k, 0] * length, y + legs[k, 1] * length
-        x, y = x + legs[k, 0] * length, y + legs[k, 1] * length
-        reached += sinking * length
-    return x, y
 
 
 @kernel
@@ -51,8 +37,8 @@ def strays(tracks: Tracks, depth: float, scattering: float) -> FloatArray:
     for i in range(PILOTS):
         down = (2 * i + 1) * tracks.reached[0] // (2 * PILOTS)
         back = (2 * (i * 19 % PILOTS) + 1) * tracks.reached[1] // (2 * PILOTS)
-        east, north = stray_at(depth * scattering, tracks.legs[0, down])
-        x, y = stray_at(depth * scattering, tracks.legs[1, back])
+        _, east, north = way_to(depth * scattering, tracks.legs[0, down])
+        _, x, y = way_to(depth * scattering, tracks.legs[1, back])
         result[i, 0], result[i, 1] = (east + x) / scattering, (north + y) / scattering
     return result
 
@@ -68,12 +54,10 @@ def deviations(scene: Scene, optics: Optics, strayed: FloatArray, isolated: bool
     level, height = scene.sea.level, optics.position[2] - scene.sea.level
     result = np.empty(optics.rows * optics.columns)
     for pixel in range(len(result)):
-        row = 2.0 * (pixel // optics.columns + 0.5) / optics.rows - 1.0
-        column = 2.0 * (pixel % optics.columns + 0.5) / optics.columns - 1.0
-        if optics.columns_forward:
-            forward, right = -column * optics.half_forward, row * optics.half_right
-        else:
-            forward, right = -row * optics.half_forward, column * optics.half_right
+        row, column = pixel // optics.columns, pixel % optics.columns
+        forward, right = tangents_at(
+            optics, (row + 0.5) / optics.rows, (column + 0.5) / optics.columns
+        )
         dx, dy, dz, _ = direction_of(optics, forward, right)
         lit = 0
         if dz < 0.0:

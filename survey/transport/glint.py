@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.constants import speed_of_light
 
 from survey.optics.interface import fresnel_reflectance
-from survey.transport.launch import Optics, direction_of, pixel_at
+from survey.transport.launch import Optics, direction_of, pixel_at, tangents_at
 from survey.transport.scene import Scene
 from survey.transport.sheet import first_water
 from survey.transport.surface import return_per_steradian
@@ -37,10 +37,9 @@ def add_glint(
     area = math.pi * optics.aperture_radius**2
     share = photons / (rows * columns)
     for sample in range(rows * columns):
-        in_row = (sample // columns + 0.5) / rows * 2.0 - 1.0
-        in_column = (sample % columns + 0.5) / columns * 2.0 - 1.0
-        forward = -(in_column if optics.columns_forward else in_row) * optics.half_forward
-        right = (in_row if optics.columns_forward else in_column) * optics.half_right
+        forward, right = tangents_at(
+            optics, (sample // columns + 0.5) / rows, (sample % columns + 0.5) / columns
+        )
         dx, dy, dz, cosine = direction_of(optics, forward, right)
         x, y, z = optics.position
         if dz >= 0.0:

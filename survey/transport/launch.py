@@ -54,6 +54,15 @@ def pixel_at(optics: Optics, forward: float, right: float) -> int:
 
 
 @leaf_kernel
+def tangents_at(optics: Optics, in_rows: float, in_columns: float) -> tuple[float, float]:
+    """Tangents (forward, right) of a place in the field of view, from 0 to 1 each way."""
+    row, column = 2.0 * in_rows - 1.0, 2.0 * in_columns - 1.0
+    if optics.columns_forward:
+        return -column * optics.half_forward, row * optics.half_right
+    return -row * optics.half_forward, column * optics.half_right
+
+
+@leaf_kernel
 def direction_of(optics: Optics, forward: float, right: float) -> tuple[float, float, float, float]:
     """Unit direction on the map of the tangents (forward, right), and its cosine to boresight."""
     cosine = 1.0 / math.sqrt(1.0 + forward * forward + right * right)

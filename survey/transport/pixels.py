@@ -12,7 +12,7 @@ from scipy.constants import speed_of_light
 from survey.optics.interface import fresnel_reflectance, reflected
 from survey.transport.beam import light_on_water
 from survey.transport.directions import lambert_direction
-from survey.transport.launch import Optics, direction_of, fraction
+from survey.transport.launch import Optics, direction_of, fraction, tangents_at
 from survey.transport.light_paths import (
     FLATTEST,
     ROULETTE_BELOW,
@@ -280,11 +280,7 @@ def see(
     of a direction is aperture area x cos^4 (to boresight) x tangent-plane area.
     """
     way_back, way_down = chosen(tracks, 2 * batch + 1, back), chosen(tracks, 2 * batch, down)
-    row, column = 2.0 * in_rows - 1.0, 2.0 * in_columns - 1.0
-    if optics.columns_forward:
-        forward, right = -column * optics.half_forward, row * optics.half_right
-    else:
-        forward, right = -row * optics.half_forward, column * optics.half_right
+    forward, right = tangents_at(optics, in_rows, in_columns)
     dx, dy, dz, cosine = direction_of(optics, forward, right)
     ahead = aside = 1.0
     while ahead * ahead + aside * aside >= 1.0:

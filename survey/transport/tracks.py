@@ -45,16 +45,23 @@ class Tracks(NamedTuple):
 
 
 @leaf_kernel
-def path_to(depth: float, legs: NDArray[np.float32]) -> float:
-    """Path of a track to a depth along its first leg, both in scatterings; inf: not in its legs."""
-    path = reached = 0.0
+def way_to(depth: float, legs: NDArray[np.float32]) -> tuple[float, float, float]:
+    """Path of a track to a depth along its first leg, and how far aside it is there.
+
+    All in scatterings; a track that does not get there within its legs has an infinite path, and
+    is where its legs end.
+    """
+    x = y = path = reached = 0.0
     for k in range(legs.shape[0]):
         sinking, length = legs[k, 2], legs[k, 3]
-        if reached + sinking * length >= depth:
-            return float(path + (depth - reached) / sinking)
+        there = reached + sinking * length >= depth
+        if there:
+            length = (depth - reached) / sinking
+        x, y, path = x + legs[k, 0] * length, y + legs[k, 1] * length, path + length
+        if there:
+            return path, x, y
         reached += sinking * length
-        path += length
-    return math.inf
+    return math.inf, x, y
 
 
 @kernel
@@ -93,7 +100,7 @@ def draw_tracks(
                     optical = exponential(state)
                 leg = unordered[j, k]
                 leg[0], leg[1], leg[2], leg[3] = dx, dy, dz, optical
-            path[j] = path_to(depth * medium.scattering, unordered[j])
+            path[j], _, _ = way_to(depth * medium.scattering, unordered[j])
         order = np.argsort(path, kind="mergesort")
         reached[i] = np.isfinite(path).sum()
         for j in range(tracks):

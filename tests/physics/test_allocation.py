@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from survey.transport import engine as engine_module
-from survey.transport.allocation import PILOTS, SPREAD, deviations, stray_at, strays
+from survey.transport.allocation import PILOTS, SPREAD, deviations, strays
 from survey.transport.engine import kernel_optics
 from survey.transport.scene import forward_medium
-from survey.transport.tracks import draw_tracks
+from survey.transport.tracks import draw_tracks, way_to
 from tests.physics.conftest import level_pose, make_engine
 
 
@@ -17,9 +17,9 @@ def test_a_track_strays_as_its_legs_say():
     """Down 2, then aside under 45 degrees: at a depth of 3 it is 1 off; never at 9, it ends."""
     slant = np.sqrt(0.5)
     legs = np.array([[0, 0, 1, 2.0], [slant, 0, slant, 2.0]], np.float32)
-    assert stray_at(3.0, legs) == pytest.approx((1.0, 0.0), abs=1e-6)
-    assert stray_at(1.0, legs) == (0.0, 0.0)
-    assert stray_at(9.0, legs) == pytest.approx((2.0 * slant, 0.0), abs=1e-6)
+    assert way_to(3.0, legs)[1:] == pytest.approx((1.0, 0.0), abs=1e-6)
+    assert way_to(1.0, legs)[1:] == (0.0, 0.0)
+    assert way_to(9.0, legs)[1:] == pytest.approx((2.0 * slant, 0.0), abs=1e-6)
 
 
 def test_strays_grow_with_depth_and_have_no_side():

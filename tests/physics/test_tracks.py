@@ -13,7 +13,7 @@ from survey.transport import tracks as tracks_module
 from survey.transport.random import TRACKS as TRACKS_PURPOSE
 from survey.transport.random import start_stream
 from survey.transport.scene import forward_medium
-from survey.transport.tracks import Tracks, axes_around, chosen, draw_tracks, path_to
+from survey.transport.tracks import Tracks, axes_around, chosen, draw_tracks, way_to
 from terrain.kernels import kernel
 
 SETS, TRACKS, LEGS = 8, 2048, 12
@@ -101,13 +101,13 @@ def test_path_to_a_depth(tracks):
         for depth in (0.5, 2.0, 6.0):
             expected = plain_path_to(depth, legs.astype(float))
             step = float(legs[:, 3].sum()) / 400_000
-            assert path_to(depth, legs) == pytest.approx(expected, abs=2.0 * step + 1e-5)
+            assert way_to(depth, legs)[0] == pytest.approx(expected, abs=2.0 * step + 1e-5)
 
 
 def test_tracks_stand_in_the_order_of_their_paths(tracks, water):
     depth = 10.0 * water.scattering
     for i in range(SETS):
-        paths = np.array([path_to(depth, legs) for legs in tracks.legs[i]])
+        paths = np.array([way_to(depth, legs)[0] for legs in tracks.legs[i]])
         reached = tracks.reached[i]
         assert np.all(np.diff(paths[:reached]) >= 0.0)
         assert np.isinf(paths[reached:]).all()
