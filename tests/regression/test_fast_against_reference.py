@@ -29,7 +29,7 @@ QUANTILE = 3.5
 WORK = {"walks_per_pixel": 16, "tracks_per_replicate": 4096}
 
 
-def fast_bands(**settings: Any) -> np.ndarray:
+def fast_bands(flashes_flown: int = FLASHES, **settings: Any) -> np.ndarray:
     """Return photons (flashes, column and bottom, bands) of the fast engine."""
     frame = MapFrame(easting=0.0, northing=0.0, epsg=25832, vertical_epsg=5714)
     ground = Ground(map_frame=frame, length=800.0, width=800.0, reflectance=reference.REFLECTANCE)
@@ -46,7 +46,7 @@ def fast_bands(**settings: Any) -> np.ndarray:
         settings=TransportSettings(**(WORK | settings)),
         seed=5,
     )
-    flashes = [engine.flash(pose=reference.POSE, frame=frame) for frame in range(FLASHES)]
+    flashes = [engine.flash(pose=reference.POSE, frame=frame) for frame in range(flashes_flown)]
     return np.array(
         [reference.bands(flash.photo_electrons[1:].sum(axis=(1, 2))) for flash in flashes]
     )
@@ -84,8 +84,13 @@ def test_fast_engine_equals_reference_engine(stored):
 @pytest.mark.slow
 @pytest.mark.parametrize("degrees", [20.0, 45.0])
 def test_split_angle_does_not_matter(stored, degrees):
-    """The same at other split angles: what one walk no longer does, the other does."""
-    assert_equivalent(fast_bands(split_angle=np.radians(degrees)), stored)
+    """The same at other split angles: what one walk no longer does, the other does.
+
+    At 20 degrees the spikes of single paths leave 0.5 % error in a band of 48 flashes: four times
+    as many are flown.
+    """
+    found = fast_bands(4 * FLASHES, split_angle=np.radians(degrees))
+    assert_equivalent(found, stored)
 
 
 def test_stored_reference_is_the_engine_s_own(stored):
