@@ -97,6 +97,13 @@ class WaterColumn:
         """Group index [1]."""
         return self.surface.group_index
 
+    @property
+    def phase_functions(self) -> list[PhaseFunction]:
+        """Every phase function in the column, once."""
+        return list(
+            {id(p): p for p in (layer.water.phase_function for layer in self.layers)}.values()
+        )
+
     def at(self, depth: float) -> Water:
         """Return the water at a depth [m]."""
         return [layer.water for layer in self.layers if layer.top <= max(depth, 0.0)][-1]
@@ -184,7 +191,7 @@ def profiled_water(
     (1.5, 11)
     """
     indices = {"refractive_index": refractive_index, "group_index": group_index}
-    layers = []
+    layers: list[Layer] = []
     for i, (upper, lower) in enumerate(pairwise(depth)):
         ends = [(v[i], v[i + 1]) for v in (absorption, scattering)]
         slices = max(1, *(math.ceil(abs(b - a) / (FINEST_STEP * max(a, b, 1e-9))) for a, b in ends))
