@@ -22,12 +22,12 @@ from survey.transport.allocation import deviations, strays, walks_of_pixels
 from survey.transport.glint import add_glint, add_mirror
 from survey.transport.launch import Optics
 from survey.transport.layers import kernel_layers
-from survey.transport.light_paths import Method
+from survey.transport.light_sent import Method
 from survey.transport.pixels import LEDGER_NAMES, Address, see_all
 from survey.transport.scene import Bounds, Scene, drawn_sea, facet_sea
 from survey.transport.settings import TransportSettings
 from survey.transport.surface import NORMAL_QUANTILES
-from survey.transport.tally import Tally
+from survey.transport.tally import LEG, Tally
 from survey.transport.tracks import draw_tracks
 from survey.transport.waveforms import (
     PULSE_REACH,
@@ -195,8 +195,8 @@ class Engine:
             width=self._coarse,
             fine=np.empty((2, self._bins.number), np.float32),
             coarse=np.empty((self.settings.replicates, 2, coarse_bins), np.float32),
-            down=np.empty((legs, 7)),
-            back=np.empty((legs, 10)),
+            down=np.empty((legs, len(LEG))),
+            back=np.empty((legs, len(LEG))),
             noted=np.zeros(2, np.int64),
             ledger=np.zeros(len(LEDGER_NAMES)),
             taps=self._taps.astype(np.float32),

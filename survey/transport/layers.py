@@ -153,6 +153,12 @@ def bend_at(layers: Layers, depth: float, chance: float) -> float:
 
 
 @inlined_kernel
+def wide_turn(layers: Layers, depth: float, cosine: float, split_cosine: float) -> float:
+    """Return how unlikely a turn is: 1 / density if it is wider than the split [sr], else 0."""
+    return 1.0 / density_at(layers, depth, cosine) if cosine < split_cosine else 0.0
+
+
+@inlined_kernel
 def density_at(layers: Layers, depth: float, cosine: float) -> float:
     """Phase function of the water at a depth, at the cosine of a wide angle [1/sr]."""
     table = layers.densities[layers.phase[last_at(layers.tops, depth)]]

@@ -13,16 +13,14 @@ from survey.optics.interface import fresnel_reflectance, reflected
 from survey.transport.beam import light_on_water
 from survey.transport.directions import lambert_direction
 from survey.transport.launch import Optics, direction_of, fraction, tangents_at
-from survey.transport.layers import Layers, crossed, free_path
+from survey.transport.layers import Layers, crossed, free_path, wide_turn
 from survey.transport.light_paths import (
-    FLATTEST,
     ROULETTE_BELOW,
     ROULETTE_SURVIVAL,
-    Method,
     Place,
-    Sight,
     send_light,
 )
+from survey.transport.light_sent import Method, Sight
 from survey.transport.random import PIXELS, start_stream, uniform
 from survey.transport.scene import Scene
 from survey.transport.sheet import first_water, sea_under, water_above
@@ -119,20 +117,20 @@ def walk_back(
 ) -> Touch:
     """Follow a walk along tracks until it touches the bottom, escapes, leaves or is too late.
 
-    The weight does not hold the absorption, which is told beside. While ``noting``, legs are
-    noted up to the first scattering by more than the split angle, and no roulette is played.
+    The weight does not hold the absorption, which is told beside. Legs are noted if ``noting``.
     """
     ledger, sea = tally.ledger, scene.sea
     _, x, y, z, dx, dy, dz, path, absorbed, weight = start
     frame = frame_around(dx, dy, dz, method.circle, state)
-    k, turning, fate = 0, False, LATE
+    k, turning, fate, entered = 0, False, LATE, weight
+    turns = scattered = 0.0
     track, optical = way.track, way.optical
     unabsorbed = weight * math.exp(-absorbed)
     while True:
         depth, ox, oy, oz = sea.level - z, dx, dy, dz
         row = tracks.legs[which, track, k]
         dx, dy, dz = direction_along(layers, row, turning, depth, frame, dx, dy, dz)
-        noting = noting and dx * ox + dy * oy + dz * oz >= method.split_cosine
+        turns += wide_turn(layers, depth, dx * ox + dy * oy + dz * oz, method.split_cosine)
         length = min(free_path(layers, depth, -dz, optical), limit - path)
         to_air, slope_x, slope_y = water_above(scene, x, y, z, dx, dy, dz, length)
         surfaced = to_air < math.inf
@@ -143,8 +141,14 @@ def walk_back(
             to_bottom, face = first_hit(scene.grid, x, y, z, dx, dy, dz, length)
             if face >= 0:
                 length = to_bottom
-        if noting and abs(dz) >= FLATTEST:
-            note_leg(tally, x, y, z, dx, dy, dz, length, path, absorbed)
+        if noting and tally.noted[0] < tally.back.shape[0]:
+            note_leg(
+                tally.back[tally.noted[0]], x, y, depth, dx, dy, dz, length, path, absorbed,
+                scattered, weight / entered, turns, depth,
+            )  # fmt: skip
+            tally.noted[0] += 1
+        ahead = crossed(layers, layers.scattering, layers.scattered, depth, -dz, length)
+        scattered += ahead
         absorbed += crossed(layers, layers.absorption, layers.absorbed, depth, -dz, length)
         x, y, z, path = x + dx * length, y + dy * length, z + dz * length, path + length
         if face >= 0:
@@ -170,7 +174,7 @@ def walk_back(
             if uniform(state) >= fresnel_reflectance(cosine, layers.refractive_index):
                 fate = ESCAPED
                 break
-            optical -= crossed(layers, layers.scattering, layers.scattered, depth, -dz, length)
+            optical -= ahead
             dx, dy, dz = reflected(dx, dy, dz, mx, my, mz)
             frame, turning = mirrored(frame, mx, my, mz), False
             continue
@@ -178,7 +182,7 @@ def walk_back(
         tally.noted[1] += 1
         if k == tracks.legs.shape[2]:
             kept = weight * math.exp(-absorbed)
-            if not noting and kept < ROULETTE_BELOW:
+            if kept < ROULETTE_BELOW:
                 ledger[ABSORBED] += unabsorbed - kept
                 if uniform(state) >= ROULETTE_SURVIVAL:
                     ledger[ROULETTE] += kept

@@ -10,6 +10,23 @@ from numpy.typing import NDArray
 from terrain.kernels import fused_kernel, inlined_kernel, leaf_kernel
 
 COLUMN, BOTTOM = 0, 1
+LEG = (
+    "east",
+    "north",
+    "depth",
+    "direction east",
+    "direction north",
+    "direction up",
+    "length",
+    "path before",
+    "absorbed before",
+    "scattered before",
+    "weight",
+    "sum of 1 / density of its wide turns",
+    "path per metre up",
+    "deepest before",
+)
+"""What is noted of a leg; places of a track are relative to where it entered."""
 
 FloatRow = NDArray[np.float32]
 
@@ -26,12 +43,11 @@ class Tally(NamedTuple):
     """Notes of the pixel at work; they are used again for the next.
 
     ``fine`` (2, bins) are photons of column and bottom, all replicates together; ``coarse``
-    (replicates, 2, bins) each replicate's own in bins of ``width`` fine ones. ``down`` (legs, 7)
-    are the legs of the track of light: place relative to where it entered, with the depth,
-    direction, length; ``back`` (legs, 10) those of the walk from the pixel before its first turn:
-    place, direction, length, path before, path per metre up, absorbed before. ``noted[0]`` counts
-    the latter, ``noted[1]`` all scatterings. ``taps`` and ``coarse_taps`` are the pulse in both
-    kinds of bins, ``rows`` (3, coarse bins and as many as the pulse reaches) room to work.
+    (replicates, 2, bins) each replicate's own in bins of ``width`` fine ones. ``down`` (legs, 14)
+    are the legs of the track of light, ``back`` those of the walk from the pixel before it touches
+    the bottom, `LEG` by column. ``noted[0]`` counts the latter, ``noted[1]`` all scatterings.
+    ``taps`` and ``coarse_taps`` are the pulse in both kinds of bins, ``rows`` (3, coarse bins and
+    as many as the pulse reaches) room to work.
     """
 
     bins: TimeBins
@@ -63,24 +79,25 @@ def deposit(tally: Tally, origin: int, batch: int, time: float, photons: float) 
 
 @inlined_kernel
 def note_leg(
-    tally: Tally,
+    leg: NDArray[np.float64],
     x: float,
     y: float,
-    z: float,
+    depth: float,
     dx: float,
     dy: float,
     dz: float,
     length: float,
     path: float,
     absorbed: float,
+    scattered: float,
+    weight: float,
+    turns: float,
+    deepest: float,
 ) -> None:
-    """Note a leg of the walk from the pixel, while there is room."""
-    i = tally.noted[0]
-    if i < tally.back.shape[0]:
-        leg = tally.back[i]
-        leg[0], leg[1], leg[2], leg[3], leg[4], leg[5] = x, y, z, dx, dy, dz
-        leg[6], leg[7], leg[8], leg[9] = length, path, 1.0 / dz, absorbed
-        tally.noted[0] = i + 1
+    """Note a leg in the columns of `LEG`."""
+    leg[0], leg[1], leg[2], leg[3], leg[4], leg[5], leg[6] = x, y, depth, dx, dy, dz, length
+    leg[7], leg[8], leg[9], leg[10], leg[11] = path, absorbed, scattered, weight, turns
+    leg[12], leg[13] = 1.0 / dz, deepest
 
 
 @leaf_kernel

@@ -14,7 +14,7 @@ import pytest
 
 from survey.transport.beam import light_on_water, ray_to
 from survey.transport.engine import kernel_optics
-from survey.transport.light_paths import Facet, Sight, light_sent
+from survey.transport.light_sent import Facet, Sight, light_sent
 from tests.physics.conftest import level_pose
 
 HEIGHT, DEPTH, INDEX = 2000.0, 10.0, 1.33
