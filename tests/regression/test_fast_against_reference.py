@@ -82,7 +82,7 @@ def test_fast_engine_equals_reference_engine(stored):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("degrees", [20.0, 45.0])
+@pytest.mark.parametrize("degrees", [20.0, 30.0, 45.0])
 def test_split_angle_does_not_matter(stored, degrees):
     """The same at other split angles: what one walk no longer does, the other does.
 
