@@ -5,7 +5,7 @@ DEMO := runs/demo
 FLY := $(BIN)/bathyflash run scenarios/measured-seabed.toml -o $(DEMO)
 OTHER_RUN := 5
 
-.PHONY: help venv libraries demo test slow check format
+.PHONY: help venv libraries demo test slow bench check format
 
 help:
 	@echo "make venv    create .venv with all libraries"
@@ -13,6 +13,7 @@ help:
 	@echo "make check   format, lint, types and direction of imports"
 	@echo "make test    check, then all tests but the slow ones"
 	@echo "make slow    the slow tests"
+	@echo "make bench   how fast the engine and its kernels are: nothing else should run"
 	@echo "make format  bring the code into its format"
 
 venv: $(READY)
@@ -41,6 +42,10 @@ test: libraries check
 
 slow: libraries $(READY)
 	$(BIN)/python -m pytest -m slow
+
+bench: $(READY)
+	$(BIN)/python tests/benchmarks/kernels.py
+	$(BIN)/bathyflash bench
 
 format: $(READY)
 	$(BIN)/ruff format .

@@ -19,6 +19,9 @@ Settings = Annotated[
 ]
 
 
+LARGEST_SEED = 2**63 - 1
+
+
 class Guarded(TyperGroup):
     """Turns every error into its lines for the user and its exit status."""
 
@@ -185,7 +188,7 @@ def response(
         Literal["flood", "isolated"], typer.Option(help="Who lights a pixel.")
     ] = "flood",
     bottom_depth: Annotated[float, typer.Option(metavar="M", help="Depth [m].")] = 20.0,
-    seed: Annotated[int, typer.Option(min=0)] = 1,
+    seed: Annotated[int, typer.Option(min=0, max=LARGEST_SEED)] = 1,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, not a table.")] = False,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="PNG or SVG.")] = None,
 ) -> None:
@@ -218,7 +221,7 @@ def paper(
     work: Annotated[
         float, typer.Option(help="Walks over those of the full computation, 0.01 to 100.")
     ] = 1.0,
-    seed: Annotated[int, typer.Option(min=0)] = 1,
+    seed: Annotated[int, typer.Option(min=0, max=LARGEST_SEED)] = 1,
     threads: Annotated[int, typer.Option(min=0, help="0 is one for each core.")] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, not a table.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing but errors.")] = False,

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 INDEX = 1.33  # phase and group index, as in [Lisenko2017]; only two_way_10ns depends on it
 LARGEST_ATTENUATION = 25.0  # 2 K_d z: exp(-25) is 1.4e-11
+LARGEST_COEFFICIENT = 1000.0  # [1/m], as in a scenario's water
+LEAST_ATTENUATION = 0.04  # [1/m]: purest water absorbs 0.0442, and the column is 8 / c long
 OPTION = "--phase-function"
 PICTURES = (".png", ".svg")
 
@@ -60,12 +62,7 @@ def water_of(
         names = ", ".join(PAPER_COEFFICIENTS)
         text = f"is none of {names}.{did_you_mean(name, PAPER_COEFFICIENTS)}"
         faults.append(Fault(f"--water {name}", text))
-    options = (("--a", absorption), ("--b", scattering), ("--bottom-depth", bottom_depth))
-    for option, value in options:
-        if value is not None and not (np.isfinite(value) and value > 0.0):
-            faults.append(Fault(f"{option} {value:g}", "must be above 0 and finite."))
-    if plot is not None and plot.suffix.lower() not in PICTURES:
-        faults.append(Fault(f"--plot {plot}", f"writes {' or '.join(PICTURES)}. Choose one."))
+    faults += _number_faults(absorption, scattering, bottom_depth) + _plot_faults(plot)
     phase, phase_faults = _phase_function(phase_function)
     _require(faults + phase_faults)
     if name is not None:
@@ -92,6 +89,36 @@ def _fitting_faults(name: str | None, own: tuple[object, ...]) -> list[Fault]:
     if name is None and any(value is None for value in own):
         return [Fault("water", "--a, --b and --phase-function go together.")]
     return []
+
+
+def _number_faults(
+    absorption: float | None, scattering: float | None, bottom_depth: float
+) -> list[Fault]:
+    options = (("--a", absorption), ("--b", scattering), ("--bottom-depth", bottom_depth))
+    faults = []
+    for option, value in options:
+        if value is not None and not (np.isfinite(value) and value > 0.0):
+            faults.append(Fault(f"{option} {value:g}", "must be above 0 and finite."))
+        elif value is not None and option != "--bottom-depth" and value > LARGEST_COEFFICIENT:
+            faults.append(Fault(f"{option} {value:g}", f"must be {LARGEST_COEFFICIENT:g} or less."))
+    if faults or absorption is None or scattering is None:
+        return faults
+    attenuation = absorption + scattering
+    if attenuation >= LEAST_ATTENUATION:
+        return []
+    text = f"together {attenuation:g} 1/m, must be {LEAST_ATTENUATION:g} or more."
+    return [Fault("--a and --b", text)]
+
+
+def _plot_faults(plot: Path | None) -> list[Fault]:
+    if plot is None:
+        return []
+    faults = []
+    if plot.suffix.lower() not in PICTURES:
+        faults.append(Fault(f"--plot {plot}", f"writes {' or '.join(PICTURES)}. Choose one."))
+    if not plot.parent.is_dir():
+        faults.append(Fault(f"--plot {plot}", f"no folder {str(plot.parent)!r}.", True))
+    return faults
 
 
 def _require(faults: list[Fault]) -> None:

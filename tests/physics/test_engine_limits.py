@@ -145,32 +145,6 @@ def test_energy_of_the_walks_from_the_pixels_balances(engine_of, nadir, water, d
     assert ledger["left sideways"] < 1e-3 * launched
 
 
-def test_pulse_energy_scales_exactly(engine_of, nadir):
-    """Eight times the energy gives exactly eight times the photo-electrons."""
-    few = {"walks_per_pixel": 16}
-    plain = engine_of(**few).flash(pose=nadir, frame=3).photo_electrons
-    strong = engine_of(pulse_energy=8.0, **few).flash(pose=nadir, frame=3).photo_electrons
-    assert np.array_equal(strong, 8.0 * plain)
-
-
-def test_similar_scenes_give_the_same_echo(engine_of, nadir):
-    """All lengths and times doubled, a and b halved: the same histories in the same bins."""
-    few = {"walks_per_pixel": 16}
-    plain = engine_of(absorption=0.18, scattering=0.2, **few)
-    large = engine_of(absorption=0.09, scattering=0.1, scale=2.0, **few)
-    twice = replace(nadir, position=2.0 * nadir.position)
-    echoes = plain.flash(pose=nadir, frame=1).photo_electrons
-    again = large.flash(pose=twice, frame=1).photo_electrons
-    assert np.allclose(again, echoes, rtol=1e-4, atol=1e-6 * echoes.max(axis=(1, 2, 3)).min())
-
-
-def test_the_same_flash_draws_the_same_light(engine_of, nadir):
-    few = {"walks_per_pixel": 16}
-    first, second = (engine_of(**few).flash(pose=nadir, frame=5) for _ in range(2))
-    assert np.array_equal(first.photo_electrons, second.photo_electrons)
-    assert np.array_equal(first.variance, second.variance)
-
-
 def test_isolated_pixels_see_less_than_flooded_ones(engine_of, nadir):
     """A neighbour's light adds to a flooded pixel: the bottom echo of 10 m coastal water."""
     few = {"walks_per_pixel": 32}

@@ -16,6 +16,7 @@ Errors are those of 64 flashes each way.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -30,10 +31,11 @@ FLASHES, BAND = 64, 10
 EQUIVALENT, QUANTILE = 0.02, 3.3
 FURTHEST, LEAST_SHARE = 4.5, 0.05
 VARIANTS = {
+    "split at 20 degrees": {"split_angle": math.radians(20.0)},
     "split at 30 degrees": {"split_angle": math.radians(30.0)},
     "split at 60 degrees": {"split_angle": math.radians(60.0)},
     "column spacing halved": {"column_spacing": 0.5},
-    "tracks doubled": {"tracks_per_replicate": 1024},
+    "tracks doubled": {"tracks_per_replicate": 2048},
     "walks doubled": {"walks_per_pixel": 128},
 }
 SCENES = ("flat", "slope", "wreck")
@@ -82,6 +84,12 @@ def compare(found, known):
 @pytest.mark.parametrize("scene", ["flat", "wreck"])
 def test_settings_do_not_matter(scene, variant):
     compare(bands(scene, variant, 11), bands(scene, "as it is", 12))
+
+
+def test_every_variant_differs_from_the_settings_as_they_are():
+    plain = make_engine(shape=(4, 8)).settings
+    for variant in VARIANTS.values():
+        assert replace(plain, **variant) != plain
 
 
 @pytest.mark.slow

@@ -16,6 +16,7 @@ from survey.transport.surface import (
     enter_water,
     facing_from_below,
     glint_per_steradian,
+    return_per_steradian,
 )
 from terrain.kernels import kernel
 from terrain.sea_surface import SeaSurface
@@ -166,26 +167,57 @@ def test_glint_equals_the_closed_form():
         assert glint_per_steradian(sea, INDEX, *ray) == pytest.approx(closed, rel=1e-12)
 
 
-def test_glint_against_facets():
-    """Of a beam off nadir, what facets throw back into a 3 degree cone, per solid angle.
+def thrown_back(*, ray, slope, variance, facets, cone):
+    """Return what drawn facets on water of a slope throw back into a cone [1/sr], per light caught.
 
-    Two million drawn facets hold the ratio to 1.5 % (one standard error 0.5 %).
+    ``slope`` (2,) and ``variance`` (2,) towards east and north; ``cone`` is its half angle [rad].
     """
     chance = np.random.default_rng(8)
-    up, cross, angle = 0.03, 0.02, math.radians(8.0)
-    ray = np.array([math.sin(angle), 0.0, -math.cos(angle)])
-    slopes = chance.normal(size=(2_000_000, 2)) * np.sqrt([up, cross])
-    normals = np.column_stack([-slopes, np.ones(len(slopes))])
+    slopes = slope + chance.normal(size=(facets, 2)) * np.sqrt(variance)
+    normals = np.column_stack([-slopes, np.ones(facets)])
+    shown = np.maximum(-normals @ ray, 0.0)
+    shown /= -np.array([-slope[0], -slope[1], 1.0]) @ ray
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    facing = -normals @ ray
-    weight = facing / (normals[:, 2] * math.cos(angle))
-    back = ray + 2.0 * facing[:, None] * normals
-    cone = math.radians(3.0)
+    back = ray - 2.0 * (normals @ ray)[:, None] * normals
     hits = back @ -ray > math.cos(cone)
     rho = ((INDEX - 1) / (INDEX + 1)) ** 2
-    drawn = rho * weight[hits].sum() / len(slopes) / (2 * math.pi * (1 - math.cos(cone)))
-    surface = SeaSurface(
-        level=0.0, upwind_slope_variance=up, crosswind_slope_variance=cross, wind_from=math.pi / 2
+    return rho * shown[hits].sum() / facets / (2 * math.pi * (1 - math.cos(cone)))
+
+
+@pytest.mark.parametrize(
+    ("degrees", "slope"), [(8.0, (0.0, 0.0)), (8.0, (-0.05, 0.15)), (30.0, (0.4, 0.1))]
+)
+def test_glint_against_facets(degrees, slope):
+    """Of a slanting beam, what facets on level and on sloping water throw back, per solid angle.
+
+    Rationale: facets show the beam the more the more they face it, and so does the water under
+    them: at 30 degrees a slope of 0.4 catches 23 % more than level water.
+    Expected: two million drawn facets hold the ratio to 4 % (one standard error 0.6 to 1 %).
+    Source: mirror facets, drawn one by one.
+    """
+    angle, variance = math.radians(degrees), (0.03, 0.02)
+    ray = np.array([math.sin(angle), 0.0, -math.cos(angle)])
+    drawn = thrown_back(
+        ray=ray, slope=np.array(slope), variance=variance, facets=2_000_000, cone=math.radians(3.0)
     )
-    closed = glint_per_steradian(kernel_sea(surface), INDEX, *ray)
-    assert drawn / closed == pytest.approx(1.0, abs=0.015)
+    surface = SeaSurface(
+        level=0.0,
+        upwind_slope_variance=variance[0],
+        crosswind_slope_variance=variance[1],
+        wind_from=math.pi / 2,
+    )
+    sea = kernel_sea(surface)
+    closed = return_per_steradian(sea, INDEX, *ray, *slope)
+    assert drawn / closed == pytest.approx(1.0, abs=0.04)
+    if slope == (0.0, 0.0):
+        assert glint_per_steradian(sea, INDEX, *ray) == pytest.approx(closed, rel=1e-12)
+
+
+def test_foam_sends_back_by_the_angle_of_incidence():
+    """White water of a slope is Lambertian: 0.22 / pi cos i, i between beam and its normal."""
+    sea = kernel_sea(SeaSurface.from_wind(level=0.0, wind_speed=5.0, wind_from=0.0))
+    normal = np.array([-0.3, -0.1, 1.0]) / math.sqrt(1.1)
+    ray = np.array([0.5, 0.0, -math.sqrt(0.75)])
+    found = return_per_steradian(sea._replace(white=1.0), INDEX, *ray, 0.3, 0.1)
+    assert found == pytest.approx(0.22 / math.pi * -(normal @ ray), rel=1e-12)
+    assert return_per_steradian(sea._replace(white=1.0), INDEX, *ray, -2.0, 0.0) == 0.0

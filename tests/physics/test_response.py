@@ -103,9 +103,14 @@ def test_unscattered_light_lies_within_the_square():
 
 
 def test_one_percent_error(coastal):
-    """The bottom and every column bin with c z of at most 8, by 64 batches: about 1 %."""
-    for found in coastal.values():
-        assert np.all(found.column_sem < 0.012 * found.column)
+    """The bottom and every column bin with c z of at most 8, by 64 batches: about 1 %.
+
+    Harbor water, isolated, is the worst of the named ones: 0.9 % in its last bin.
+    """
+    harbor = response(water=water("harbor"), illumination="isolated", bottom_depth=4.0)
+    for found, attenuation in ((harbor, 2.19), *((way, 0.398) for way in coastal.values())):
+        within = found.bin_edges[1:] * attenuation <= 8.0
+        assert np.all(found.column_sem[within] < 0.012 * found.column[within])
         assert found.two_way.sem < 0.01 * found.two_way.value
 
 

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 from survey import bench, bench_scaling
 from survey.cli import app
 from survey.transport.settings import TransportSettings
+from tests.benchmarks import kernels
 
 RUN = CliRunner()
 SMALL = {"camera.rows": 4, "camera.columns": 8}
@@ -74,3 +75,12 @@ def test_exponent_is_that_of_the_power_law(monkeypatch):
     row = bench_scaling._row("pixels", [512, 2048, 8192], [512, 2048, 8192])
     assert row["exponent"] == pytest.approx(0.7)
     assert row["sizes"] == [512, 2048, 8192]
+
+
+def test_every_kernel_has_its_time(monkeypatch):
+    """The script of `make bench`, with hardly any work: nanoseconds, none of them timed here."""
+    for name in ("CALLS", "TRACKS", "PIXELS"):
+        monkeypatch.setattr(kernels, name, 16)
+    found = kernels.measured(repeats=1)
+    assert len(found) == 7
+    assert all(np.isfinite(time) and time > 0.0 for time in found.values())

@@ -15,6 +15,8 @@ HARBOR = ["response", "--water", "harbor", "--illumination", "isolated", "--json
 HARBOR += ["--bottom-depth", "2"]
 OWN_WATER = ["response", "--a", "0.5", "--b", "0.5", "--bottom-depth", "1", "--phase-function"]
 
+OWN_KIND = ["--phase-function", "molecular", "--bottom-depth", "1"]
+
 
 def test_json_has_column_and_bottom(tmp_path):
     plot = tmp_path / "response.png"
@@ -93,6 +95,10 @@ def test_every_fault_of_a_table_has_its_line(tmp_path):
         (["--water", "coastal", "--illumination", "sun"], "'flood', 'isolated'"),
         (["--water", "coastal", "--bottom-depth", "0"], "must be above 0"),
         (["--water", "coastal", "--plot", "x.bmp"], ".png or .svg"),
+        (["--water", "coastal", "--plot", "none/x.png"], "--plot none/x.png: no folder 'none'"),
+        (["--water", "coastal", "--seed", "9223372036854775808"], "'--seed'"),
+        ([*OWN_KIND, "--a", "1e-9", "--b", "1e-9"], "together 2e-09 1/m, must be 0.04 or more"),
+        ([*OWN_KIND, "--a", "1001", "--b", "1e300"], "--b 1e+300: must be 1000 or less"),
         (["--a", "-1", "--b", "0", "--phase-function", "x.csv"], "--b 0: must be above 0"),
         (["--a", "1", "--b", "1", "--phase-function", "none.csv"], "no file 'none.csv'"),
     ],
