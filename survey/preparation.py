@@ -17,7 +17,6 @@ from survey.cloud.raw import RawReadings, raw_readings
 from survey.flight.pose import Frame, Pose
 from survey.flight.trajectory import footprints, require_air
 from survey.optics.background import background_power
-from survey.products.reach import WaterClarity
 from survey.products.run_products import ProductSettings
 from survey.scenario import components
 from survey.scenario.scenario import Scenario
@@ -79,7 +78,7 @@ def prepare(scenario: Scenario) -> Mission:
         With every fault, each in a line of its own.
     """
     camera, surface = components.camera(scenario), components.sea_surface(scenario)
-    frames = components.frames(scenario)
+    frames, water = components.frames(scenario), components.water(scenario)
     seabed = components.seabed(scenario)
     seabed.require_coverage(footprints(camera, frames, surface.level))
     require_air(frames, highest=seabed.grid.z_high)
@@ -101,7 +100,7 @@ def prepare(scenario: Scenario) -> Mission:
             survey_area=components.survey_area(scenario),
             trajectory_files=scenario.navigation.trajectory_files,
             deviations=components.navigation(scenario).deviations,
-            clarity=WaterClarity.of(components.water(scenario)),
+            water=water,
         ),
         raw_step=RAW_STEPS[scenario.processing.keep_waveforms],
     )

@@ -85,7 +85,7 @@ def _timed(name: str, depth: float) -> dict[str, Any]:
     return {
         "water": name,
         "depth_m": depth,
-        "scattering_depth": _number(mission.engine.water.scattering * depth),
+        "scattering_depth": _number(float(mission.engine.water.scattered(depth))),
         "pixels": mission.camera.rows * mission.camera.columns,
         "seconds": _number(min(seconds[1:])),
     }

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from survey.flight.pose import Frame
     from survey.flight.trajectory import Plan
     from survey.optics.background import CoxMunkGlint, Sky
-    from survey.optics.water import Water
+    from survey.optics.water import WaterColumn
     from survey.sensor.camera import Camera
     from survey.sensor.detector import Detector
     from survey.sensor.laser import Laser
@@ -108,11 +108,11 @@ def detector(scenario: Scenario) -> Detector:
     return build_detector(scenario)
 
 
-def water(scenario: Scenario) -> Water:
-    """Return the water."""
-    from survey.scenario.water_parts import build_water
+def water(scenario: Scenario) -> WaterColumn:
+    """Return the water with its layers."""
+    from survey.scenario.water_column_parts import build_column
 
-    return build_water(
+    return build_column(
         scenario.water, wavelength_nm=scenario.laser.wavelength_nm, folder=scenario.folder
     )
 

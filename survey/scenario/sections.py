@@ -97,14 +97,6 @@ class Detector(Section):
     burst_rate_hz: Positive = 1.0e5
 
 
-class Water(Section):
-    """What every water has; `survey.scenario.water_sections` holds the ways to state one."""
-
-    type: str
-    refractive_index: Annotated[float, Field(ge=1.0, le=2.0)] = 1.3415
-    group_index: Annotated[float, Field(ge=1.0, le=2.0)] = 1.36
-
-
 class Sun(Section):
     """Background light: by the sun's place and the air, or a stated radiance instead.
 

@@ -158,7 +158,7 @@ def test_the_paper_s_mission_by_day_and_night_down_a_slope_and_flat(name: str, w
     by_day = load_scenario(name)
     assert "impossible as hardware" in by_day.mission.description
     assert components.camera(by_day).half_tangents == (0.256, 0.128)
-    medium = components.water(by_day)
+    medium = components.water(by_day).surface
     assert (medium.absorption, medium.scattering) == PAPER_COEFFICIENTS[water]
     assert components.background_radiance(by_day) == pytest.approx(51.8e6, rel=1e-3)
     by_night = by_day.replace(**parse_overrides(["sun.day=false"]))

@@ -16,7 +16,7 @@ from survey.optics.water.medium import Water
 FloatArray = NDArray[np.float64]
 
 FINEST_STEP = 0.05
-"""Change of a coefficient within one slice of a continuous profile, over its larger end [1]."""
+"""Change of a coefficient within a slice, over the larger of the profile's values beside it [1]."""
 ROUNDING = 1e-9
 
 
@@ -126,6 +126,10 @@ class WaterColumn:
     def scattered(self, depth: ArrayLike) -> FloatArray:
         """Integral of the scattering coefficient from the surface down to ``depth`` [m], [1]."""
         return self.integral(depth, lambda water: water.scattering)
+
+    def attenuated(self, depth: ArrayLike) -> FloatArray:
+        """Integral of the beam attenuation from the surface down to ``depth`` [m], [1]."""
+        return self.integral(depth, lambda water: water.attenuation)
 
     def mean(self, depth: float) -> Water:
         """Return uniform water with the mean coefficients down to a depth [m].
