@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from math import hypot
@@ -37,13 +37,20 @@ RAW_STEPS = {"none": None, "sampled": 8, "all": 1}
 
 @dataclass(frozen=True, kw_only=True)
 class Mission:
-    """The parts of a mission in SI units; `prepare` builds them."""
+    """The parts of a mission in SI units; `prepare` builds them.
+
+    `engine` and `posed_noise` are those of mean level; `level_error` is how far the expected water
+    level lies above the true one [m].
+    """
 
     frames: Sequence[Frame]
     camera: Camera
     detector: Detector
     seabed: Seabed
+    sea: SeaSurface
+    engine_over: Callable[[SeaSurface], Engine]
     engine: Engine
+    level_error: float
     posed_noise: PosedNoise
     products: ProductSettings
     raw_step: int | None
@@ -53,9 +60,18 @@ class Mission:
         """The noise model of the level sensor."""
         return self.posed_noise.level
 
-    def noise_at(self, pose: Pose) -> NoiseModel:
-        """Return the noise model at a measured pose."""
-        return self.posed_noise.at(pose)
+    def engine_at(self, time: float) -> Engine:
+        """Return the engine at the water level of a time [s]."""
+        return self.engine if self.sea.tide is None else self.engine_over(self.sea.at(time))
+
+    def expected_level(self, time: float) -> float:
+        """Return the elevation of the water that the survey expects at a time [s], [m]."""
+        return self.sea.at(time).level + self.level_error
+
+    def noise_at(self, pose: Pose, *, time: float = 0.0) -> NoiseModel:
+        """Return the noise model at a measured pose, over the level expected at a time [s]."""
+        rise = self.expected_level(time) - self.sea.level
+        return self.posed_noise.at(replace(pose, position=pose.position - [0.0, 0.0, rise]))
 
     def raw_of(self, readings: Readings) -> RawReadings | None:
         """Return the part of the readings that is kept; None where none is."""
@@ -80,14 +96,18 @@ def prepare(scenario: Scenario) -> Mission:
     camera, surface = components.camera(scenario), components.sea_surface(scenario)
     frames, water = components.frames(scenario), components.water(scenario)
     seabed = components.seabed(scenario)
-    seabed.require_coverage(footprints(camera, frames, surface.level))
+    seabed.require_coverage(footprints(camera, frames, surface.lowest_level))
     require_air(frames, highest=seabed.grid.z_high)
+    engine_over = partial(_engine, scenario, seabed)
     return Mission(
         frames=frames,
         camera=camera,
         detector=components.detector(scenario),
         seabed=seabed,
-        engine=_engine(scenario, seabed, surface),
+        sea=surface,
+        engine_over=engine_over,
+        engine=engine_over(surface),
+        level_error=scenario.processing.water_level_error_m,
         posed_noise=posed_noise(scenario, frames[0], surface),
         products=ProductSettings(
             title=scenario.mission.title,

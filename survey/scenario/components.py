@@ -253,7 +253,7 @@ def ranging_settings(scenario: Scenario) -> RangingSettings:
 
 
 def view_outlines(scenario: Scenario) -> list[FloatArray]:
-    """Return what the frames see of the water, outlines (corners, 2) in the local frame [m].
+    """Return what the frames see of the lowest water: outlines (corners, 2) in the local frame [m].
 
     Raises
     ------
@@ -263,7 +263,8 @@ def view_outlines(scenario: Scenario) -> list[FloatArray]:
     from survey.flight.trajectory import footprints
 
     try:
-        return footprints(camera(scenario), frames(scenario), scenario.surface.water_level_m)
+        lowest = scenario.surface.water_level_m - scenario.surface.tidal_amplitude_m
+        return footprints(camera(scenario), frames(scenario), lowest)
     except ValueError as fault:
         raise _named(scenario, fault) from fault
 

@@ -151,7 +151,7 @@ def test_check_tells_every_layer(scenario: Any, tmp_path: Path) -> None:
     path.write_text(scenario(WATERS["profile"]).to_toml())
     done = CliRunner().invoke(app, ["check", str(path)])
     assert done.exit_code == 0
-    assert "profile down to 8 m, 16 layers: absorption 0.1 to 0.2, scattering 0.2 to 0" in (
+    assert "profile down to 8 m, 17 layers: absorption 0.1 to 0.2, scattering 0.2 to 0" in (
         done.stdout
     )
 
