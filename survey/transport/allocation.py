@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from survey.transport.beam import light_on_water
 from survey.transport.launch import Optics, direction_of, tangents_at
 from survey.transport.scene import Scene
-from survey.transport.tracks import Tracks, way_to
+from survey.transport.tracks import Tracks
 from terrain.kernels import kernel
 
 FloatArray = NDArray[np.float64]
@@ -25,22 +25,17 @@ SPREAD = 0.1
 """Relative variance of the light of one path that begins in lit water, as measured [1]."""
 
 
-@kernel
-def strays(tracks: Tracks, depth: float, scattering: float) -> FloatArray:
+def strays(tracks: Tracks) -> FloatArray:
     """Return how far light strays on its way down and back up (pilots, 2) [m].
 
     Pairs of tracks of the first two sets, spread evenly over those that get down to the depth.
     """
-    result = np.zeros((PILOTS, 2))
-    if scattering == 0.0 or tracks.reached[0] == 0 or tracks.reached[1] == 0:
-        return result
-    for i in range(PILOTS):
-        down = (2 * i + 1) * tracks.reached[0] // (2 * PILOTS)
-        back = (2 * (i * 19 % PILOTS) + 1) * tracks.reached[1] // (2 * PILOTS)
-        _, east, north = way_to(depth * scattering, tracks.legs[0, down])
-        _, x, y = way_to(depth * scattering, tracks.legs[1, back])
-        result[i, 0], result[i, 1] = (east + x) / scattering, (north + y) / scattering
-    return result
+    if not tracks.reached[:2].all():
+        return np.zeros((PILOTS, 2))
+    pilots = np.arange(PILOTS)
+    down = (2 * pilots + 1) * tracks.reached[0] // (2 * PILOTS)
+    back = (2 * (pilots * 19 % PILOTS) + 1) * tracks.reached[1] // (2 * PILOTS)
+    return np.asarray(tracks.aside[0, down] + tracks.aside[1, back])
 
 
 @kernel

@@ -14,16 +14,17 @@ from numpy.typing import NDArray
 
 from survey.flight.pose import Pose
 from survey.flight.trajectory import footprint
-from survey.optics.water import Water
+from survey.optics.water import Water, WaterColumn
 from survey.sensor.camera import Camera
 from survey.sensor.laser import Laser
 from survey.sensor.receiver import Receiver
 from survey.transport.allocation import deviations, strays, walks_of_pixels
 from survey.transport.glint import add_glint, add_mirror
 from survey.transport.launch import Optics
+from survey.transport.layers import kernel_layers
 from survey.transport.light_paths import Method
 from survey.transport.pixels import LEDGER_NAMES, Address, see_all
-from survey.transport.scene import Bounds, Scene, drawn_sea, facet_sea, forward_medium
+from survey.transport.scene import Bounds, Scene, drawn_sea, facet_sea
 from survey.transport.settings import TransportSettings
 from survey.transport.surface import NORMAL_QUANTILES
 from survey.transport.tally import Tally
@@ -74,8 +75,8 @@ class Engine:
         Mesh with reflectance and its grid.
     surface : SeaSurface
         Level and slopes of the sea.
-    water : Water
-        Its optical properties.
+    water : Water or WaterColumn
+        Its optical properties, at all depths or by depth.
     laser, camera, receiver
         The instrument.
     photo_electrons_per_photon : float
@@ -91,7 +92,7 @@ class Engine:
         *,
         seabed: Seabed,
         surface: SeaSurface,
-        water: Water,
+        water: Water | WaterColumn,
         laser: Laser,
         camera: Camera,
         receiver: Receiver,
@@ -99,10 +100,11 @@ class Engine:
         settings: TransportSettings,
         seed: int,
     ) -> None:
-        self.surface, self.water, self.settings, self.seed = surface, water, settings, seed
+        self.water = WaterColumn.uniform(water) if isinstance(water, Water) else water
+        self.surface, self.settings, self.seed = surface, settings, seed
         self.laser, self.camera, self.receiver = laser, camera, receiver
         self.photo_electrons = laser.photons_per_pulse * photo_electrons_per_photon
-        self._medium = forward_medium(water)
+        self._layers = kernel_layers(self.water)
         self._grid = seabed.grid
         self._reflectance = np.ascontiguousarray(seabed.reflectance, dtype=np.float64)
         self._method = self._light_paths()
@@ -133,13 +135,12 @@ class Engine:
         optics = kernel_optics(camera=self.camera, receiver=self.receiver, pose=pose)
         scene = self._scene(pose, time)
         settings, address = self.settings, Address(self.seed, frame)
-        legs = FEWEST_LEGS + int(min(MOST_LEGS, 2.0 * scene.bounds.depth * self.water.scattering))
+        scatterings = 2.0 * float(self.water.scattered(scene.bounds.depth))
         tracks = draw_tracks(
-            self._medium, 2 * settings.replicates, settings.tracks_per_replicate, legs,
-            scene.bounds.depth, self._method.split_cosine, *address,
+            self._layers, 2 * settings.replicates, settings.tracks_per_replicate,
+            FEWEST_LEGS + int(min(MOST_LEGS, scatterings)), scene.bounds.depth, *address,
         )  # fmt: skip
-        strayed = strays(tracks, scene.bounds.depth, self.water.scattering)
-        deviation = deviations(scene, optics, strayed, self._method.isolated)
+        deviation = deviations(scene, optics, strays(tracks), self._method.isolated)
         walks = walks_of_pixels(deviation, mean=settings.walks_per_replicate)
         pixels, tally = len(walks), self._tally()
         mean = np.empty((3, pixels, self.receiver.bins), np.float32)
@@ -147,7 +148,7 @@ class Engine:
         variance[0] = 0.0
         mean[0] = self._surface_echo(scene, optics)
         see_all(
-            scene, self._medium, optics, self._method, tracks, tally, address,
+            scene, self._layers, optics, self._method, tracks, tally, address,
             walks, np.empty(2, np.uint64), mean[1:], variance[1:],
         )  # fmt: skip
         launched = settings.replicates * walks.sum()
@@ -161,22 +162,33 @@ class Engine:
             ledger=dict(zip(LEDGER_NAMES, (tally.ledger / launched).tolist(), strict=True)),
         )
 
+    @property
+    def _deepest_in_gate(self) -> float:
+        return 0.5 * self.receiver.bins * self.receiver.bin_width * self._layers.speed
+
+    def _column_spacing(self) -> float:
+        """Return the scatterings between points of a track: attenuation lengths, times b / c."""
+        mean = self.water.mean(self._deepest_in_gate)
+        if mean.scattering == 0.0:
+            return np.inf
+        return self.settings.column_spacing * mean.scattering / mean.attenuation
+
     def _light_paths(self) -> Method:
         azimuth = 2.0 * np.pi * np.arange(AZIMUTHS) / AZIMUTHS
         return Method(
             split_cosine=float(np.cos(self.settings.split_angle)),
-            spacing=self.settings.column_spacing / max(self.water.attenuation, 1e-9),
+            spacing=self._column_spacing(),
             isolated=self.settings.illumination == "isolated",
             photons=self.photo_electrons,
-            cosine_table=self.water.phase_function.cosine_table(),
             quantiles=NORMAL_QUANTILES,
             circle=np.column_stack([np.cos(azimuth), np.sin(azimuth)]),
         )
 
     def _tally(self) -> Tally:
         """Return empty notes; a track that scatters thrice as often as expected is cut short."""
-        in_gate = self.receiver.bins * self.receiver.bin_width * self._medium.speed
-        legs = LEGS_BESIDE + int(LEGS_PER_SCATTERING * in_gate * self._medium.scattering)
+        legs = LEGS_BESIDE + int(
+            LEGS_PER_SCATTERING * 2.0 * self._deepest_in_gate * self._layers.scattering.max()
+        )
         coarse_bins = self._bins.number // self._coarse + 1
         return Tally(
             bins=self._bins,
@@ -184,7 +196,7 @@ class Engine:
             fine=np.empty((2, self._bins.number), np.float32),
             coarse=np.empty((self.settings.replicates, 2, coarse_bins), np.float32),
             down=np.empty((legs, 7)),
-            back=np.empty((legs, 9)),
+            back=np.empty((legs, 10)),
             noted=np.zeros(2, np.int64),
             ledger=np.zeros(len(LEDGER_NAMES)),
             taps=self._taps.astype(np.float32),
@@ -202,8 +214,7 @@ class Engine:
     def _scene(self, pose: Pose, time: float) -> Scene:
         """Return the scene of a flash: the box around the lit water and the seabed in it."""
         outline, level = footprint(self.camera, pose, self.surface.level), self.surface.level
-        in_gate = 0.5 * self.receiver.bins * self.receiver.bin_width * self._medium.speed
-        deepest = max(0.0, min(in_gate, level - self._grid.z_low))
+        deepest = max(0.0, min(self._deepest_in_gate, level - self._grid.z_low))
         margin = deepest + self.receiver.aperture_radius
         west, south = outline.min(axis=0) - margin
         east, north = outline.max(axis=0) + margin
@@ -225,7 +236,7 @@ class Engine:
                 north=north,
                 lowest=lowest,
                 highest=highest,
-                depth=round(min(max(level - top, 0.0), in_gate), TO_A_MILLIMETRE),
+                depth=round(min(max(level - top, 0.0), self._deepest_in_gate), TO_A_MILLIMETRE),
                 latest=self.receiver.gate_end,
             ),
         )

@@ -21,8 +21,9 @@ from scipy.constants import speed_of_light
 from survey.optics.interface import fresnel_reflectance, reflected
 from survey.transport.beam import Ray, light_on_water, ray_to
 from survey.transport.launch import Optics
+from survey.transport.layers import Layers, crossed, density_of, free_path
 from survey.transport.random import uniform
-from survey.transport.scene import FOLLOWED, Medium, Scene
+from survey.transport.scene import FOLLOWED, Scene
 from survey.transport.sheet import crest_or_trough, through_waves
 from survey.transport.surface import (
     drawn_normal,
@@ -33,7 +34,13 @@ from survey.transport.surface import (
     tilted,
 )
 from survey.transport.tally import BOTTOM, COLUMN, Tally, deposit
-from survey.transport.tracks import Course, Tracks, axes_around
+from survey.transport.tracks import (
+    Course,
+    Tracks,
+    direction_along,
+    frame_around,
+    mirrored,
+)
 from terrain.kernels import inlined_kernel
 from terrain.raycast import first_hit
 from terrain.waves.lattice import elevation_and_slopes
@@ -45,13 +52,16 @@ ROULETTE_BELOW, ROULETTE_SURVIVAL = 1e-4, 0.1
 
 
 class Method(NamedTuple):
-    """How light paths are made: see `TransportSettings`; ``photons`` launched in a pulse."""
+    """How light paths are made: see `TransportSettings`.
+
+    ``spacing`` of the points that light the column in scatterings [1], ``photons`` launched in a
+    pulse.
+    """
 
     split_cosine: float
     spacing: float
     isolated: bool
     photons: float
-    cosine_table: NDArray[np.float64]
     quantiles: NDArray[np.float64]
     circle: NDArray[np.float64]
 
@@ -91,7 +101,10 @@ class Sent(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Where a walk touches the bottom: ``gain`` is its importance times reflectance over pi."""
+    """Where a walk touches the bottom: ``gain`` is its importance times reflectance over pi.
+
+    ``absorbed`` is the optical depth of absorption on its ``path`` [m].
+    """
 
     x: float
     y: float
@@ -100,6 +113,7 @@ class Place(NamedTuple):
     ny: float
     nz: float
     path: float
+    absorbed: float
     gain: float
 
 
@@ -191,7 +205,7 @@ def is_open(
 @inlined_kernel
 def add_bottom(
     scene: Scene,
-    medium: Medium,
+    layers: Layers,
     optics: Optics,
     method: Method,
     tally: Tally,
@@ -201,6 +215,7 @@ def add_bottom(
     legs: int,
     along: float,
     path: float,
+    absorbed: float,
     strength: float,
     facet: Facet,
 ) -> None:
@@ -229,19 +244,21 @@ def add_bottom(
         scene, tally, legs, along, place.x - east, place.y - north, scene.sea.level + lift
     ):
         return
-    path = max(path + along + deeper / dz, straight)
-    whole = path + place.path
+    absorbed += crossed(layers, layers.absorption, layers.absorbed, leg[2], -dz, along)
+    straightened = max(path + along + deeper / dz, straight)
+    absorbed *= straightened / max(path + along, GAP)
+    whole = straightened + place.path
     photons = method.photons * strength * light * facing / abs(dz) * place.gain
     deposit(
-        tally, BOTTOM, sight.batch, sight.time + in_air / speed_of_light + whole / medium.speed,
-        photons * math.exp(-medium.attenuation * whole),
+        tally, BOTTOM, sight.batch, sight.time + in_air / speed_of_light + whole / layers.speed,
+        photons * math.exp(-absorbed - place.absorbed),
     )  # fmt: skip
 
 
 @inlined_kernel
 def add_column(
     scene: Scene,
-    medium: Medium,
+    layers: Layers,
     optics: Optics,
     method: Method,
     tally: Tally,
@@ -250,6 +267,7 @@ def add_column(
     legs: int,
     along: float,
     path: float,
+    absorbed: float,
     strength: float,
     deepest: float,
     facet: Facet,
@@ -260,7 +278,8 @@ def add_column(
     depth = leg[2] - dz * along
     east, north = leg[0] + dx * along, leg[1] + dy * along
     z = scene.sea.level - depth
-    table, slack = method.cosine_table, crest_or_trough(scene)
+    slack = crest_or_trough(scene)
+    absorbed += crossed(layers, layers.absorption, layers.absorbed, leg[2], -dz, along)
     for i in range(tally.noted[0]):
         back = tally.back[i]
         to = (z - back[2]) * back[8]
@@ -286,23 +305,25 @@ def add_column(
             scene, tally, legs, along, x - east, y - north, level
         ):
             continue
-        at = max(0.0, 0.5 * (cosine + 1.0) * (table.shape[0] - 1))
-        entry = min(int(at), table.shape[0] - 2)
-        density = table[entry] + (at - entry) * (table[entry + 1] - table[entry])
-        whole = path + along + back[7] + max(0.0, to - deeper * back[8])
+        to = max(0.0, to - deeper * back[8])
+        whole = path + along + back[7] + to
+        kept = absorbed + back[9]
+        kept += crossed(
+            layers, layers.absorption, layers.absorbed, scene.sea.level - back[2], -back[5], to
+        )
         photons = method.photons * strength * light * sight.importance * abs(back[8])
-        photons *= medium.scattering * method.spacing * density
+        photons *= method.spacing * density_of(layers, depth, cosine)
         deposit(
             tally, COLUMN, sight.batch,
-            sight.time + in_air / speed_of_light + whole / medium.speed,
-            photons * math.exp(-medium.attenuation * whole),
+            sight.time + in_air / speed_of_light + whole / layers.speed,
+            photons * math.exp(-kept),
         )  # fmt: skip
 
 
 @inlined_kernel
 def send_light(
     scene: Scene,
-    medium: Medium,
+    layers: Layers,
     optics: Optics,
     method: Method,
     tracks: Tracks,
@@ -320,7 +341,7 @@ def send_light(
     """
     sea = scene.sea
     target = sea.level - place.z
-    ray = ray_to(optics, sea.level, medium.refractive_index, place.x, place.y, target)
+    ray = ray_to(optics, sea.level, layers.refractive_index, place.x, place.y, target)
     dx, dy = ray.x - optics.position[0], ray.y - optics.position[1]
     dz = sea.level - optics.position[2]
     norm = 1.0 / math.sqrt(dx * dx + dy * dy + dz * dz)
@@ -332,17 +353,16 @@ def send_light(
         mx, my, mz = tilted(mx, my, mz, FOLLOWED * wave_x, FOLLOWED * wave_y)
         facet = Facet(-mx / mz, -my / mz, density)
     dx, dy, dz, caught, reflectance = enter_water(
-        medium.refractive_index, dx * norm, dy * norm, dz * norm, mx, my, mz
+        layers.refractive_index, dx * norm, dy * norm, dz * norm, mx, my, mz
     )
     if caught <= 0.0 or dz >= 0.0:
         return
     strength = weight * caught * (1.0 - reflectance) * passing(sea)
-    ax, ay, az, bx, by, bz = axes_around(dx, dy, dz, method.circle, state)
-    cx, cy, cz = dx, dy, dz
-    which, k, legs = 2 * sight.batch, 0, 0
-    x = y = depth = path = deepest = 0.0
+    frame = frame_around(dx, dy, dz, method.circle, state)
+    which, k, turning, legs = 2 * sight.batch, 0, False, 0
+    x = y = depth = path = absorbed = scattered = deepest = 0.0
     height = optics.position[2] - scene.waves.highest
-    limit = (scene.bounds.latest - sight.time - height / speed_of_light) * medium.speed
+    limit = (scene.bounds.latest - sight.time - height / speed_of_light) * layers.speed
     floor = scene.waves.highest - scene.bounds.lowest
     over, under = scene.waves.highest - sea.level, sea.level - scene.waves.lowest
     sample = method.spacing * uniform(state)
@@ -350,10 +370,8 @@ def send_light(
     track, optical = way.track, way.optical
     while True:
         row = tracks.legs[which, track, k]
-        dx = row[0] * ax + row[1] * bx + row[2] * cx
-        dy = row[0] * ay + row[1] * by + row[2] * cy
-        dz = row[0] * az + row[1] * bz + row[2] * cz
-        length = min(optical / medium.scattering, limit - path)
+        dx, dy, dz = direction_along(layers, row, turning, depth, frame, dx, dy, dz)
+        length = min(free_path(layers, depth, -dz, optical), limit - path)
         surfaced = dz > 0.0 and depth < dz * length
         if surfaced:
             length = depth / dz
@@ -363,12 +381,13 @@ def send_light(
         leg[0], leg[1], leg[2], leg[3], leg[4], leg[5], leg[6] = x, y, depth, dx, dy, dz, length
         legs += 1
         sinking = -dz * length
+        ahead = crossed(layers, layers.scattering, layers.scattered, depth, -dz, length)
         if with_column:
-            while sample < path + length:
-                along = sample - path
+            while sample < scattered + ahead:
+                along = free_path(layers, depth, -dz, sample - scattered)
                 add_column(
-                    scene, medium, optics, method, tally, sight, ray, legs, along, path, strength,
-                    max(deepest, depth - dz * along), facet,
+                    scene, layers, optics, method, tally, sight, ray, legs, along, path, absorbed,
+                    strength, max(deepest, depth - dz * along), facet,
                 )  # fmt: skip
                 sample += method.spacing
         at_place = (depth < target) != (depth + sinking < target)
@@ -377,8 +396,8 @@ def send_light(
             at_place = shallow < target + over and deep > target - under
         if place.gain > 0.0 and at_place:
             add_bottom(
-                scene, medium, optics, method, tally, sight, place, ray, legs,
-                (target - depth) / -dz, path, strength, facet,
+                scene, layers, optics, method, tally, sight, place, ray, legs,
+                (target - depth) / -dz, path, absorbed, strength, facet,
             )  # fmt: skip
             if target > floor - GAP:
                 return
@@ -387,7 +406,8 @@ def send_light(
                 if uniform(state) >= CHANCE_BEYOND:
                     return
                 strength /= CHANCE_BEYOND
-        path += length
+        path, scattered = path + length, scattered + ahead
+        absorbed += crossed(layers, layers.absorption, layers.absorbed, depth, -dz, length)
         x, y, depth = x + dx * length, y + dy * length, depth + sinking
         deepest = max(deepest, depth)
         if path >= limit or depth > floor:
@@ -397,21 +417,19 @@ def send_light(
             mx, my, mz = drawn_normal(scene.drawn, method.quantiles, state)
             mx, my, mz = facing_from_below(dx, dy, dz, mx, my, mz, 0.0, 0.0)
             cosine = dx * mx + dy * my + dz * mz
-            if uniform(state) >= fresnel_reflectance(cosine, medium.refractive_index):
+            if uniform(state) >= fresnel_reflectance(cosine, layers.refractive_index):
                 return
-            ax, ay, az = reflected(ax, ay, az, mx, my, mz)
-            bx, by, bz = reflected(bx, by, bz, mx, my, mz)
-            cx, cy, cz = reflected(cx, cy, cz, mx, my, mz)
-            optical -= length * medium.scattering
+            dx, dy, dz = reflected(dx, dy, dz, mx, my, mz)
+            frame, turning = mirrored(frame, mx, my, mz), False
+            optical -= ahead
             continue
         k += 1
         tally.noted[1] += 1
         if k == tracks.legs.shape[2]:
-            if strength * math.exp(-medium.attenuation * path) < ROULETTE_BELOW:
+            if strength * math.exp(-absorbed) < ROULETTE_BELOW:
                 if uniform(state) >= ROULETTE_SURVIVAL:
                     return
                 strength /= ROULETTE_SURVIVAL
-            ax, ay, az, bx, by, bz = axes_around(dx, dy, dz, method.circle, state)
-            cx, cy, cz = dx, dy, dz
+            frame = frame_around(dx, dy, dz, method.circle, state)
             track, k = int(uniform(state) * tracks.legs.shape[1]), 1
-        optical = tracks.legs[which, track, k, 3]
+        turning, optical = True, tracks.legs[which, track, k, 3]

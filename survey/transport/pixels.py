@@ -13,6 +13,7 @@ from survey.optics.interface import fresnel_reflectance, reflected
 from survey.transport.beam import light_on_water
 from survey.transport.directions import lambert_direction
 from survey.transport.launch import Optics, direction_of, fraction, tangents_at
+from survey.transport.layers import Layers, crossed, free_path
 from survey.transport.light_paths import (
     FLATTEST,
     ROULETTE_BELOW,
@@ -23,7 +24,7 @@ from survey.transport.light_paths import (
     send_light,
 )
 from survey.transport.random import PIXELS, start_stream, uniform
-from survey.transport.scene import Medium, Scene
+from survey.transport.scene import Scene
 from survey.transport.sheet import first_water, sea_under, water_above
 from survey.transport.surface import (
     drawn_normal,
@@ -33,7 +34,15 @@ from survey.transport.surface import (
     tilted,
 )
 from survey.transport.tally import BOTTOM, Tally, add_up, clear, deposit, note_leg, tell_variance
-from survey.transport.tracks import Course, Tracks, axes_around, chosen, course
+from survey.transport.tracks import (
+    Course,
+    Tracks,
+    chosen,
+    course,
+    direction_along,
+    frame_around,
+    mirrored,
+)
 from terrain.kernels import fused_kernel, inlined_kernel, leaf_kernel
 from terrain.raycast import first_hit
 
@@ -58,7 +67,10 @@ LEDGER_NAMES = (
 
 
 class Touch(NamedTuple):
-    """Where a walk met the bottom; ``face`` is -1 when it did not."""
+    """Where a walk met the bottom; ``face`` is -1 when it did not.
+
+    ``absorbed`` is the optical depth of absorption on its ``path`` [m].
+    """
 
     face: int
     x: float
@@ -68,6 +80,7 @@ class Touch(NamedTuple):
     dy: float
     dz: float
     path: float
+    absorbed: float
     weight: float
 
 
@@ -93,7 +106,7 @@ def facing_normal(
 @inlined_kernel
 def walk_back(
     scene: Scene,
-    medium: Medium,
+    layers: Layers,
     method: Method,
     tracks: Tracks,
     tally: Tally,
@@ -106,22 +119,21 @@ def walk_back(
 ) -> Touch:
     """Follow a walk along tracks until it touches the bottom, escapes, leaves or is too late.
 
-    The weight does not hold the absorption, which the path tells. While ``noting``, legs are
+    The weight does not hold the absorption, which is told beside. While ``noting``, legs are
     noted up to the first scattering by more than the split angle, and no roulette is played.
     """
     ledger, sea = tally.ledger, scene.sea
-    _, x, y, z, dx, dy, dz, path, weight = start
-    ax, ay, az, bx, by, bz = axes_around(dx, dy, dz, method.circle, state)
-    cx, cy, cz = dx, dy, dz
-    k, fate = 0, LATE
+    _, x, y, z, dx, dy, dz, path, absorbed, weight = start
+    frame = frame_around(dx, dy, dz, method.circle, state)
+    k, turning, fate = 0, False, LATE
     track, optical = way.track, way.optical
-    unabsorbed = weight * math.exp(-medium.attenuation * path)
+    unabsorbed = weight * math.exp(-absorbed)
     while True:
+        depth, ox, oy, oz = sea.level - z, dx, dy, dz
         row = tracks.legs[which, track, k]
-        dx = row[0] * ax + row[1] * bx + row[2] * cx
-        dy = row[0] * ay + row[1] * by + row[2] * cy
-        dz = row[0] * az + row[1] * bz + row[2] * cz
-        length = min(optical / medium.scattering, limit - path)
+        dx, dy, dz = direction_along(layers, row, turning, depth, frame, dx, dy, dz)
+        noting = noting and dx * ox + dy * oy + dz * oz >= method.split_cosine
+        length = min(free_path(layers, depth, -dz, optical), limit - path)
         to_air, slope_x, slope_y = water_above(scene, x, y, z, dx, dy, dz, length)
         surfaced = to_air < math.inf
         if surfaced:
@@ -132,12 +144,13 @@ def walk_back(
             if face >= 0:
                 length = to_bottom
         if noting and abs(dz) >= FLATTEST:
-            note_leg(tally, x, y, z, dx, dy, dz, length, path)
+            note_leg(tally, x, y, z, dx, dy, dz, length, path, absorbed)
+        absorbed += crossed(layers, layers.absorption, layers.absorbed, depth, -dz, length)
         x, y, z, path = x + dx * length, y + dy * length, z + dz * length, path + length
         if face >= 0:
-            kept = weight * math.exp(-medium.attenuation * path)
+            kept = weight * math.exp(-absorbed)
             ledger[ABSORBED] += unabsorbed - kept
-            return Touch(face, x, y, z, dx, dy, dz, path, weight)
+            return Touch(face, x, y, z, dx, dy, dz, path, absorbed, weight)
         if path >= limit:
             break
         if not (
@@ -154,35 +167,32 @@ def walk_back(
                 mx, my, mz = tilted(mx, my, mz, slope_x, slope_y)
             mx, my, mz = facing_from_below(dx, dy, dz, mx, my, mz, slope_x, slope_y)
             cosine = dx * mx + dy * my + dz * mz
-            if uniform(state) >= fresnel_reflectance(cosine, medium.refractive_index):
+            if uniform(state) >= fresnel_reflectance(cosine, layers.refractive_index):
                 fate = ESCAPED
                 break
-            ax, ay, az = reflected(ax, ay, az, mx, my, mz)
-            bx, by, bz = reflected(bx, by, bz, mx, my, mz)
-            cx, cy, cz = reflected(cx, cy, cz, mx, my, mz)
-            optical -= length * medium.scattering
+            optical -= crossed(layers, layers.scattering, layers.scattered, depth, -dz, length)
+            dx, dy, dz = reflected(dx, dy, dz, mx, my, mz)
+            frame, turning = mirrored(frame, mx, my, mz), False
             continue
         k += 1
         tally.noted[1] += 1
         if k == tracks.legs.shape[2]:
-            kept = weight * math.exp(-medium.attenuation * path)
+            kept = weight * math.exp(-absorbed)
             if not noting and kept < ROULETTE_BELOW:
                 ledger[ABSORBED] += unabsorbed - kept
                 if uniform(state) >= ROULETTE_SURVIVAL:
                     ledger[ROULETTE] += kept
-                    return Touch(-1, x, y, z, dx, dy, dz, path, 0.0)
+                    return Touch(-1, x, y, z, dx, dy, dz, path, absorbed, 0.0)
                 weight /= ROULETTE_SURVIVAL
                 unabsorbed = kept / ROULETTE_SURVIVAL
                 ledger[ROULETTE] += kept - unabsorbed
-            ax, ay, az, bx, by, bz = axes_around(dx, dy, dz, method.circle, state)
-            cx, cy, cz = dx, dy, dz
+            frame = frame_around(dx, dy, dz, method.circle, state)
             track, k = int(uniform(state) * tracks.legs.shape[1]), 1
-        noting = noting and k != tracks.first_wide[which, track]
-        optical = tracks.legs[which, track, k, 3]
-    kept = weight * math.exp(-medium.attenuation * path)
+        turning, optical = True, tracks.legs[which, track, k, 3]
+    kept = weight * math.exp(-absorbed)
     ledger[ABSORBED] += unabsorbed - kept
     ledger[fate] += kept
-    return Touch(-1, x, y, z, dx, dy, dz, path, 0.0)
+    return Touch(-1, x, y, z, dx, dy, dz, path, absorbed, 0.0)
 
 
 @leaf_kernel
@@ -203,7 +213,7 @@ def see_land(
 @inlined_kernel
 def see_bottom(
     scene: Scene,
-    medium: Medium,
+    layers: Layers,
     optics: Optics,
     method: Method,
     tracks: Tracks,
@@ -216,12 +226,12 @@ def see_bottom(
 ) -> None:
     """Walk back from under the surface, from touch to touch of the bottom, and light it all."""
     height = optics.position[2] - scene.waves.highest
-    limit = (scene.bounds.latest - sight.time - height / speed_of_light) * medium.speed
+    limit = (scene.bounds.latest - sight.time - height / speed_of_light) * layers.speed
     tally.noted[0], entered, which = 0, start.weight, 2 * sight.batch
     entry_weight, touches = back.weight, 0
     while True:
         touch = walk_back(
-            scene, medium, method, tracks, tally, which + 1, back, start, limit,
+            scene, layers, method, tracks, tally, which + 1, back, start, limit,
             touches == 0, state,
         )  # fmt: skip
         nx, ny, nz, rho = 0.0, 0.0, 1.0, 0.0
@@ -234,14 +244,14 @@ def see_bottom(
             return
         gain = sight.importance * touch.weight / entered * rho / math.pi
         send_light(
-            scene, medium, optics, method, tracks, tally, sight,
-            Place(x, y, z, nx, ny, nz, touch.path, gain), down, entry_weight * down.weight,
-            touches == 0, state,
+            scene, layers, optics, method, tracks, tally, sight,
+            Place(x, y, z, nx, ny, nz, touch.path, touch.absorbed, gain),
+            down, entry_weight * down.weight, touches == 0, state,
         )  # fmt: skip
         if touch.face < 0:
             return
         touches += 1
-        kept = touch.weight * math.exp(-medium.attenuation * touch.path)
+        kept = touch.weight * math.exp(-touch.absorbed)
         tally.ledger[SEABED] += kept * (1.0 - rho)
         kept *= rho
         if uniform(state) >= BOUNCE_CHANCE:
@@ -251,7 +261,7 @@ def see_bottom(
         dx, dy, dz = lambert_direction(nx, ny, nz, state)
         start = Touch(
             -1, x + nx * LIFT, y + ny * LIFT, z + nz * LIFT, dx, dy, dz,
-            touch.path, touch.weight * rho / BOUNCE_CHANCE,
+            touch.path, touch.absorbed, touch.weight * rho / BOUNCE_CHANCE,
         )  # fmt: skip
         back = course(tracks, which + 1, int(uniform(state) * tracks.legs.shape[1]), 1.0)
         down = chosen(tracks, which, uniform(state))
@@ -260,7 +270,7 @@ def see_bottom(
 @inlined_kernel
 def see(
     scene: Scene,
-    medium: Medium,
+    layers: Layers,
     optics: Optics,
     method: Method,
     tracks: Tracks,
@@ -304,7 +314,7 @@ def see(
     if face >= 0:
         x, y, z = x + dx * to_land, y + dy * to_land, z + dz * to_land
         sight = Sight(pixel, batch, 0.0, importance)
-        touch = Touch(face, x, y, z, dx, dy, dz, to_land, 1.0)
+        touch = Touch(face, x, y, z, dx, dy, dz, to_land, 0.0, 1.0)
         see_land(scene, optics, method, tally, sight, touch)
         ledger[REFLECTED] += 1.0
         return
@@ -318,7 +328,7 @@ def see(
         level = sea_under(scene, x, y)
         onto = -dz / (dx * slope_x + dy * slope_y - dz)
         mx, my, mz = tilted(mx, my, mz, slope_x, slope_y)
-    dx, dy, dz, caught, reflectance = enter_water(medium.refractive_index, dx, dy, dz, mx, my, mz)
+    dx, dy, dz, caught, reflectance = enter_water(layers.refractive_index, dx, dy, dz, mx, my, mz)
     caught *= onto
     ledger[FACETS] += caught - 1.0
     weight = caught * (1.0 - reflectance) * passing(scene.sea)
@@ -326,23 +336,23 @@ def see(
     if weight <= 0.0 or dz >= 0.0:
         ledger[ESCAPED] += weight
         return
-    sight = Sight(pixel, batch, length / speed_of_light, importance * weight * gain_of(medium))
-    start = Touch(-1, x, y, level, dx, dy, dz, 0.0, weight)
+    sight = Sight(pixel, batch, length / speed_of_light, importance * weight * gain_of(layers))
+    start = Touch(-1, x, y, level, dx, dy, dz, 0.0, 0.0, weight)
     see_bottom(
-        scene, medium, optics, method, tracks, tally, sight, start, way_back, way_down, state
+        scene, layers, optics, method, tracks, tally, sight, start, way_back, way_down, state
     )
 
 
 @leaf_kernel
-def gain_of(medium: Medium) -> float:
+def gain_of(layers: Layers) -> float:
     """Radiance falls by n^2 as light leaves the water [1]."""
-    return 1.0 / (medium.refractive_index * medium.refractive_index)
+    return 1.0 / (layers.refractive_index * layers.refractive_index)
 
 
 @fused_kernel
 def see_all(
     scene: Scene,
-    medium: Medium,
+    layers: Layers,
     optics: Optics,
     method: Method,
     tracks: Tracks,
@@ -366,7 +376,7 @@ def see_all(
             shift_3, shift_4 = uniform(state), uniform(state)
             for i in range(walks[pixel]):
                 see(
-                    scene, medium, optics, method, tracks, tally, pixel, batch, walks[pixel],
+                    scene, layers, optics, method, tracks, tally, pixel, batch, walks[pixel],
                     (row + fraction(shift_1 + i * PLASTIC_1)) / optics.rows,
                     (column + fraction(shift_2 + i * PLASTIC_2)) / optics.columns,
                     fraction(shift_3 + i / walks[pixel]),

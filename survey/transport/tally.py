@@ -28,10 +28,10 @@ class Tally(NamedTuple):
     ``fine`` (2, bins) are photons of column and bottom, all replicates together; ``coarse``
     (replicates, 2, bins) each replicate's own in bins of ``width`` fine ones. ``down`` (legs, 7)
     are the legs of the track of light: place relative to where it entered, with the depth,
-    direction, length; ``back`` (legs, 9) those of the walk from the pixel before its first turn:
-    place, direction, length, path before, path per metre up. ``noted[0]`` counts the latter,
-    ``noted[1]`` all scatterings. ``taps`` and ``coarse_taps`` are the pulse in both kinds of bins,
-    ``rows`` (3, coarse bins and as many as the pulse reaches) room to work.
+    direction, length; ``back`` (legs, 10) those of the walk from the pixel before its first turn:
+    place, direction, length, path before, path per metre up, absorbed before. ``noted[0]`` counts
+    the latter, ``noted[1]`` all scatterings. ``taps`` and ``coarse_taps`` are the pulse in both
+    kinds of bins, ``rows`` (3, coarse bins and as many as the pulse reaches) room to work.
     """
 
     bins: TimeBins
@@ -72,13 +72,14 @@ def note_leg(
     dz: float,
     length: float,
     path: float,
+    absorbed: float,
 ) -> None:
     """Note a leg of the walk from the pixel, while there is room."""
     i = tally.noted[0]
     if i < tally.back.shape[0]:
         leg = tally.back[i]
         leg[0], leg[1], leg[2], leg[3], leg[4], leg[5] = x, y, z, dx, dy, dz
-        leg[6], leg[7], leg[8] = length, path, 1.0 / dz
+        leg[6], leg[7], leg[8], leg[9] = length, path, 1.0 / dz, absorbed
         tally.noted[0] = i + 1
 
 

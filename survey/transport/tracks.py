@@ -1,7 +1,8 @@
 """Random walks in open water, drawn once for a flash and then laid anywhere, in any direction.
 
-Where the water is the same everywhere a walk may be shifted and turned at will. A few thousand
-tracks therefore serve all light paths of a flash, from the laser's side and from the pixels'.
+Where the water is the same everywhere a walk may be shifted and turned at will; where it changes
+with depth alone its turns and optical lengths may. A few thousand tracks therefore serve all light
+paths of a flash, from the laser's side and from the pixels'.
 """
 
 from __future__ import annotations
@@ -12,10 +13,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.transport.directions import drawn, turned
+from survey.optics.interface import reflected
+from survey.transport.directions import turned
+from survey.transport.layers import Layers, bend_of, free_path
 from survey.transport.random import TRACKS, exponential, start_stream, uniform
-from survey.transport.scene import Medium
-from terrain.kernels import kernel, leaf_kernel
+from terrain.kernels import inlined_kernel, kernel, leaf_kernel
 
 LOST_CHANCE = 0.25
 
@@ -32,48 +34,82 @@ class Tracks(NamedTuple):
     """Sets of tracks: of every replicate one for the light's way down, one for the way back.
 
     ``legs`` (sets, tracks, legs, 4) holds the direction of every leg, in a frame whose third axis
-    is the first leg, and its optical length in scatterings. ``first_wide`` (sets, tracks) is the
-    first leg after a scattering by more than the split angle, the number of legs if there is none.
-    Tracks of a set stand in the order of their paths to a certain depth, so that numbers spread
-    evenly over a set choose fast and late light evenly; ``reached`` (sets,) of them get there
-    within their legs.
+    is the first leg, and its optical length in scatterings. Where the phase function changes with
+    depth it holds, instead of a direction, how likely a smaller turn is than that which leads to
+    the leg, and the turn's azimuth [rad]. Tracks of a set stand in the order of their paths to a
+    certain depth, so that numbers spread evenly over a set choose fast and late light evenly;
+    ``reached`` (sets,) of them get there within their legs. ``aside`` (sets, tracks, 2) is how far
+    sideways they are there, or where their legs end [m].
     """
 
     legs: NDArray[np.float32]
-    first_wide: NDArray[np.int64]
+    aside: NDArray[np.float64]
     reached: NDArray[np.int64]
 
 
-@leaf_kernel
-def way_to(depth: float, legs: NDArray[np.float32]) -> tuple[float, float, float]:
-    """Path of a track to a depth along its first leg, and how far aside it is there.
+class Frame(NamedTuple):
+    """Axes that a track is laid by, the third along its first leg."""
 
-    All in scatterings; a track that does not get there within its legs has an infinite path, and
-    is where its legs end.
+    ax: float
+    ay: float
+    az: float
+    bx: float
+    by: float
+    bz: float
+    cx: float
+    cy: float
+    cz: float
+
+
+@inlined_kernel
+def direction_along(
+    layers: Layers,
+    row: NDArray[np.float32],
+    turning: bool,
+    depth: float,
+    frame: Frame,
+    dx: float,
+    dy: float,
+    dz: float,
+) -> tuple[float, float, float]:
+    """Return a leg's direction; it begins at a depth, ``turning`` from d or going on along it."""
+    if layers.samplers.shape[0] > 1:
+        if turning:
+            return turned(dx, dy, dz, bend_of(layers, depth, row[0]), row[1])
+        return dx, dy, dz
+    ax, ay, az, bx, by, bz, cx, cy, cz = frame
+    return (
+        row[0] * ax + row[1] * bx + row[2] * cx,
+        row[0] * ay + row[1] * by + row[2] * cy,
+        row[0] * az + row[1] * bz + row[2] * cz,
+    )
+
+
+@inlined_kernel
+def way_to(layers: Layers, depth: float, legs: NDArray[np.float32]) -> tuple[float, float, float]:
+    """Path of a track that begins straight down to a depth, and how far aside it is there [m].
+
+    A track that does not get there within its legs has an infinite path, and is where they end.
     """
-    x = y = path = reached = 0.0
+    frame = Frame(1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0)
+    x = y = path = reached = dx = dy = 0.0
+    dz = -1.0
     for k in range(legs.shape[0]):
-        sinking, length = legs[k, 2], legs[k, 3]
-        there = reached + sinking * length >= depth
+        dx, dy, dz = direction_along(layers, legs[k], k > 0, reached, frame, dx, dy, dz)
+        length = free_path(layers, reached, -dz, legs[k, 3])
+        there = reached - dz * length >= depth
         if there:
-            length = (depth - reached) / sinking
-        x, y, path = x + legs[k, 0] * length, y + legs[k, 1] * length, path + length
+            length = (depth - reached) / -dz
+        x, y, path = x + dx * length, y + dy * length, path + length
         if there:
             return path, x, y
-        reached += sinking * length
+        reached -= dz * length
     return math.inf, x, y
 
 
 @kernel
 def draw_tracks(
-    medium: Medium,
-    sets: int,
-    tracks: int,
-    legs: int,
-    depth: float,
-    split_cosine: float,
-    seed: int,
-    frame: int,
+    layers: Layers, sets: int, tracks: int, legs: int, depth: float, seed: int, frame: int
 ) -> Tracks:
     """Draw the tracks of a flash and order them by their paths to a ``depth`` [m].
 
@@ -81,32 +117,31 @@ def draw_tracks(
     light that has not scattered yet, stay in the order in which they were drawn.
     """
     result = np.empty((sets, tracks, legs, 4), np.float32)
-    first_wide, reached = np.empty((sets, tracks), np.int64), np.empty(sets, np.int64)
-    unordered = np.empty((tracks, legs, 4), np.float32)
-    wide, path = np.empty(tracks, np.int64), np.empty(tracks)
+    aside, reached = np.empty((sets, tracks, 2)), np.empty(sets, np.int64)
+    unordered, path = np.empty((tracks, legs, 4), np.float32), np.empty(tracks)
+    strayed = np.empty((tracks, 2))
     state = np.empty(2, np.uint64)
+    several = layers.samplers.shape[0] > 1
     for i in range(sets):
         for j in range(tracks):
             start_stream(state, seed, TRACKS, frame, i, j)
             dx, dy, dz = 0.0, 0.0, 1.0
             optical = -math.log(1.0 - (j + uniform(state)) / tracks)
-            wide[j] = legs
-            for k in range(legs):
-                if k > 0:
-                    bend = drawn(medium.sampler, medium.sampler_share, state)
-                    dx, dy, dz = turned(dx, dy, dz, bend, 2.0 * math.pi * uniform(state))
-                    if 1.0 - bend < split_cosine:
-                        wide[j] = min(wide[j], k)
-                    optical = exponential(state)
-                leg = unordered[j, k]
-                leg[0], leg[1], leg[2], leg[3] = dx, dy, dz, optical
-            path[j], _, _ = way_to(depth * medium.scattering, unordered[j])
+            unordered[j, 0] = dx, dy, dz, optical
+            for k in range(1, legs):
+                chance, azimuth = uniform(state), 2.0 * math.pi * uniform(state)
+                optical = exponential(state)
+                if several:
+                    unordered[j, k] = chance, azimuth, 0.0, optical
+                    continue
+                dx, dy, dz = turned(dx, dy, dz, bend_of(layers, 0.0, chance), azimuth)
+                unordered[j, k] = dx, dy, dz, optical
+            path[j], strayed[j, 0], strayed[j, 1] = way_to(layers, depth, unordered[j])
         order = np.argsort(path, kind="mergesort")
         reached[i] = np.isfinite(path).sum()
         for j in range(tracks):
-            result[i, j] = unordered[order[j]]
-            first_wide[i, j] = wide[order[j]]
-    return Tracks(result, first_wide, reached)
+            result[i, j], aside[i, j] = unordered[order[j]], strayed[order[j]]
+    return Tracks(result, aside, reached)
 
 
 @leaf_kernel
@@ -122,7 +157,7 @@ def chosen(tracks: Tracks, which: int, place: float) -> Course:
     Tracks that do not reach the depth matter little: where they are few, they are chosen a quarter
     as often.
     """
-    n, reached = tracks.first_wide.shape[1], tracks.reached[which]
+    n, reached = tracks.legs.shape[1], tracks.reached[which]
     rarely = max(LOST_CHANCE, (n - reached) / n)
     share = 1.0 - rarely * (n - reached) / n
     if place < share:
@@ -132,10 +167,10 @@ def chosen(tracks: Tracks, which: int, place: float) -> Course:
 
 
 @leaf_kernel
-def axes_around(
+def frame_around(
     dx: float, dy: float, dz: float, circle: NDArray[np.float64], state: NDArray[np.uint64]
-) -> tuple[float, float, float, float, float, float]:
-    """Two unit vectors that make a frame with d, turned about d by an azimuth of ``circle``."""
+) -> Frame:
+    """Axes with d as the third, turned about it by an azimuth of ``circle``."""
     i = int(uniform(state) * circle.shape[0])
     c, s = circle[i, 0], circle[i, 1]
     sign = 1.0 if dz >= 0.0 else -1.0
@@ -143,7 +178,17 @@ def axes_around(
     mixed = dx * dy * shear
     ax, ay, az = 1.0 + sign * dx * dx * shear, sign * mixed, -sign * dx
     bx, by, bz = mixed, sign + dy * dy * shear, -dy
-    return (
+    return Frame(
         c * ax + s * bx, c * ay + s * by, c * az + s * bz,
         c * bx - s * ax, c * by - s * ay, c * bz - s * az,
+        dx, dy, dz,
     )  # fmt: skip
+
+
+@leaf_kernel
+def mirrored(frame: Frame, mx: float, my: float, mz: float) -> Frame:
+    """Axes reflected by a facet of unit normal m."""
+    ax, ay, az = reflected(frame.ax, frame.ay, frame.az, mx, my, mz)
+    bx, by, bz = reflected(frame.bx, frame.by, frame.bz, mx, my, mz)
+    cx, cy, cz = reflected(frame.cx, frame.cy, frame.cz, mx, my, mz)
+    return Frame(ax, ay, az, bx, by, bz, cx, cy, cz)

@@ -9,7 +9,7 @@ import pytest
 
 from survey.flight.pose import Pose
 from survey.optics.phase import PhaseFunction
-from survey.optics.water import petzold_water
+from survey.optics.water import WaterColumn, petzold_water
 from survey.sensor.camera import Camera
 from survey.sensor.laser import Laser
 from survey.sensor.receiver import Receiver
@@ -44,6 +44,7 @@ def make_engine(
     pixel_tangent: float = 0.008,
     seabed: Seabed | None = None,
     phase_function: PhaseFunction | None = None,
+    column: WaterColumn | None = None,
     seed: int = 1,
     **settings: Any,
 ) -> Engine:
@@ -69,7 +70,9 @@ def make_engine(
             absorption=absorption,
             scattering=scattering,
             phase_function=phase_function,
-        ),
+        )
+        if column is None
+        else column,
         laser=Laser(pulse_energy=pulse_energy, wavelength=532e-9, pulse_fwhm=pulse_fwhm * scale),
         camera=Camera(
             rows=shape[0], columns=shape[1], pixel_tangent=pixel_tangent, long_side="along"

@@ -8,29 +8,30 @@ import pytest
 from survey.transport import engine as engine_module
 from survey.transport.allocation import PILOTS, SPREAD, deviations, strays
 from survey.transport.engine import kernel_optics
-from survey.transport.scene import forward_medium
+from survey.transport.layers import kernel_layers
 from survey.transport.tracks import draw_tracks, way_to
 from tests.physics.conftest import level_pose, make_engine
 
 
 def test_a_track_strays_as_its_legs_say():
     """Down 2, then aside under 45 degrees: at a depth of 3 it is 1 off; never at 9, it ends."""
+    layers = kernel_layers(make_engine(scattering=1.0).water)
     slant = np.sqrt(0.5)
     legs = np.array([[0, 0, 1, 2.0], [slant, 0, slant, 2.0]], np.float32)
-    assert way_to(3.0, legs)[1:] == pytest.approx((1.0, 0.0), abs=1e-6)
-    assert way_to(1.0, legs)[1:] == (0.0, 0.0)
-    assert way_to(9.0, legs)[1:] == pytest.approx((2.0 * slant, 0.0), abs=1e-6)
+    assert way_to(layers, 3.0, legs)[1:] == pytest.approx((1.0, 0.0), abs=1e-6)
+    assert way_to(layers, 1.0, legs)[1:] == (0.0, 0.0)
+    assert way_to(layers, 9.0, legs)[1:] == pytest.approx((2.0 * slant, 0.0), abs=1e-6)
 
 
 def test_strays_grow_with_depth_and_have_no_side():
     engine = make_engine(water="coastal", depth=20.0)
-    medium = forward_medium(engine.water)
-    tracks = draw_tracks(medium, 2, 1024, 24, 20.0, np.cos(0.8), 1, 2)
-    near, far = (strays(tracks, depth, medium.scattering) for depth in (5.0, 20.0))
+    layers = kernel_layers(engine.water)
+    near, far = (strays(draw_tracks(layers, 2, 1024, 24, depth, 1, 2)) for depth in (5.0, 20.0))
     assert far.shape == (PILOTS, 2)
     assert np.hypot(*far.T).mean() > 3.0 * np.hypot(*near.T).mean() > 0.0
     assert np.abs(far.mean(axis=0)).max() < 4.0 * far.std() / PILOTS**0.5
-    assert not strays(tracks, 20.0, 0.0).any()
+    never = kernel_layers(make_engine(scattering=0.0).water)
+    assert not strays(draw_tracks(never, 2, 1024, 24, 20.0, 1, 2)).any()
 
 
 def test_pixels_at_the_edge_are_less_certain():

@@ -27,7 +27,7 @@ def clear_water_echo(engine):
     cosine = 1.0 / np.sqrt(1.0 + tangent**2)
     in_water = np.sqrt(1.0 - (1.0 - cosine**2) / INDEX**2)
     passed = 1.0 - np.vectorize(fresnel_reflectance)(cosine, 1.0 / INDEX)
-    kept = np.exp(-engine.water.absorption * DEPTH / in_water)
+    kept = np.exp(-engine.water.surface.absorption * DEPTH / in_water)
 
     def reach(t):
         sine = t / np.sqrt(1.0 + t**2) / INDEX
@@ -56,7 +56,7 @@ def test_no_scattering_gives_the_lidar_equation(engine_of, nadir):
     area = engine.receiver.aperture_area
     closed = engine.photo_electrons / 2048 * transmitted**2 * REFLECTANCE / np.pi
     closed *= area / (INDEX * HEIGHT + DEPTH) ** 2
-    closed *= np.exp(-2.0 * engine.water.absorption * DEPTH)
+    closed *= np.exp(-2.0 * engine.water.surface.absorption * DEPTH)
     assert echo[14:18, 28:36].mean() == pytest.approx(closed, rel=0.005)
     expected = clear_water_echo(engine)[INNER]
     assert echo[INNER].sum() == pytest.approx(expected.sum(), rel=2e-4)

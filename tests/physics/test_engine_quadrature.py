@@ -65,7 +65,13 @@ def there_and_back(engine, pose, forward, right, depth):
     lit = density * falling(pose, forward, right, depth) * passed
     boresight = 1.0 / np.sqrt(1.0 + forward**2 + right**2)
     etendue = engine.receiver.aperture_area * engine.camera.pixel_tangent**2 * boresight**4
-    return lit * etendue * passed / INDEX**2 * np.exp(-2.0 * engine.water.absorption * in_water)
+    return (
+        lit
+        * etendue
+        * passed
+        / INDEX**2
+        * np.exp(-2.0 * engine.water.surface.absorption * in_water)
+    )
 
 
 def test_unscattered_light_of_a_rolled_sensor(engine_of, rolled):
@@ -101,7 +107,7 @@ def test_singly_scattered_light_of_a_rolled_sensor(engine_of, rolled):
         column_spacing=0.02,
     )  # fmt: skip
     forward, right = samples(engine.camera)
-    backwards = scattering * float(engine.water.phase_function.density(np.pi))
+    backwards = scattering * float(engine.water.surface.phase_function.density(np.pi))
     depths, weights = np.polynomial.legendre.leggauss(8)
     expected = np.zeros(forward.shape)
     for depth, weight in zip(0.5 * DEPTH * (depths + 1.0), 0.5 * DEPTH * weights, strict=True):

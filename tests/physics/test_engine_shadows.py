@@ -61,6 +61,6 @@ def test_down_in_a_shaft_there_is_hardly_any_scattered_light(engine_of, nadir):
     transmitted = 1.0 - ((INDEX - 1.0) / (INDEX + 1.0)) ** 2
     lit = engine.photo_electrons / echo.size * transmitted**2 * rho / np.pi
     closed = lit * engine.receiver.aperture_area / (INDEX * HEIGHT + depth) ** 2
-    closed *= np.exp(-2.0 * engine.water.attenuation * depth)
+    closed *= np.exp(-2.0 * engine.water.surface.attenuation * depth)
     assert 0.95 < echo[11:13, 11:13].mean() / closed < 1.2
     assert echo[:10].sum() < 0.05 * echo.sum()

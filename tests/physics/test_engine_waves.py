@@ -50,7 +50,7 @@ def light_on_the_bottom(engine: Engine, pose: Pose, chance: np.random.Generator)
             waves=waves, sea=engine.surface, position=pose.position, tangents=tangents,
             refractive_index=engine.water.refractive_index, chance=chance,
         )  # fmt: skip
-        end, kept = ends(rays, engine.water.absorption)
+        end, kept = ends(rays, engine.water.surface.absorption)
         edge = 0.5 * CELL * CELLS
         light += np.histogram2d(
             end[:, 1], end[:, 0], bins=CELLS, range=[[-edge, edge]] * 2, weights=kept
@@ -78,7 +78,7 @@ def expected_echo(engine: Engine, pose: Pose, reflectance: float) -> FloatArray:
             waves=waves, sea=engine.surface, position=pose.position, tangents=tangents,
             refractive_index=index, chance=chance,
         )  # fmt: skip
-        end, kept = ends(rays, engine.water.absorption)
+        end, kept = ends(rays, engine.water.surface.absorption)
         at = np.floor(end[:, :2] / CELL).astype(int) + CELLS // 2
         seen = kept * light[at[:, 1], at[:, 0]] / (1.0 + (tangents**2).sum(axis=1)) ** 2
         result[row, column] = seen.mean()

@@ -8,16 +8,15 @@ import numpy as np
 import pytest
 from scipy.stats import kstest
 
-from survey.optics.water import petzold_water
+from survey.optics.water import WaterColumn, petzold_water
 from survey.transport import tracks as tracks_module
+from survey.transport.layers import kernel_layers
 from survey.transport.random import TRACKS as TRACKS_PURPOSE
 from survey.transport.random import start_stream
-from survey.transport.scene import forward_medium
-from survey.transport.tracks import Tracks, axes_around, chosen, draw_tracks, way_to
+from survey.transport.tracks import Tracks, chosen, draw_tracks, frame_around, way_to
 from terrain.kernels import kernel
 
 SETS, TRACKS, LEGS = 8, 2048, 12
-SPLIT = math.cos(math.radians(45.0))
 DIRECTIONS = [
     (0.0, 0.0, -1.0),
     (0.0, 0.0, 1.0),
@@ -33,8 +32,13 @@ def water():
 
 
 @pytest.fixture(scope="module")
-def tracks(water):
-    return draw_tracks(forward_medium(water), SETS, TRACKS, LEGS, 10.0, SPLIT, 3, 5)
+def layers(water):
+    return kernel_layers(WaterColumn.uniform(water))
+
+
+@pytest.fixture(scope="module")
+def tracks(layers):
+    return draw_tracks(layers, SETS, TRACKS, LEGS, 10.0, 3, 5)
 
 
 def test_lengths_are_exponential(tracks):
@@ -76,16 +80,6 @@ def test_turns_have_the_shares_of_the_phase_function(tracks, water):
         assert abs((turn < math.radians(degrees)).mean() - share) < 4.0 * error
 
 
-def test_first_wide_is_the_first_turn_beyond_the_split_angle(tracks):
-    directions = tracks.legs[..., :3].astype(float)
-    turns = (directions[..., 1:, :] * directions[..., :-1, :]).sum(axis=-1)
-    clear = np.abs(turns - SPLIT).min(axis=-1) > 1e-6
-    wide = turns < SPLIT
-    first = np.where(wide.any(axis=-1), 1 + wide.argmax(axis=-1), LEGS)
-    assert clear.mean() > 0.99
-    assert np.array_equal(first[clear], tracks.first_wide[clear])
-
-
 def plain_path_to(depth, legs):
     """Path to a depth by walking in small steps along a finely cut track."""
     ends = np.concatenate([[0.0], np.cumsum(legs[:, 3])])
@@ -95,19 +89,21 @@ def plain_path_to(depth, legs):
     return path[below[0]] if len(below) else math.inf
 
 
-def test_path_to_a_depth(tracks):
+def test_path_to_a_depth(tracks, layers, water):
     """Where a track first gets there, within a step of 400,000; never is infinity."""
     for legs in tracks.legs[0, ::128]:
         for depth in (0.5, 2.0, 6.0):
             expected = plain_path_to(depth, legs.astype(float))
             step = float(legs[:, 3].sum()) / 400_000
-            assert way_to(depth, legs)[0] == pytest.approx(expected, abs=2.0 * step + 1e-5)
+            path = way_to(layers, depth / water.scattering, legs)[0] * water.scattering
+            assert path == pytest.approx(expected, abs=2.0 * step + 1e-5)
 
 
-def test_tracks_stand_in_the_order_of_their_paths(tracks, water):
-    depth = 10.0 * water.scattering
+def test_tracks_stand_in_the_order_of_their_paths(tracks, layers):
     for i in range(SETS):
-        paths = np.array([way_to(depth, legs)[0] for legs in tracks.legs[i]])
+        ends = np.array([way_to(layers, 10.0, legs) for legs in tracks.legs[i]])
+        paths = ends[:, 0]
+        assert np.array_equal(tracks.aside[i], ends[:, 1:])
         reached = tracks.reached[i]
         assert np.all(np.diff(paths[:reached]) >= 0.0)
         assert np.isinf(paths[reached:]).all()
@@ -115,10 +111,10 @@ def test_tracks_stand_in_the_order_of_their_paths(tracks, water):
     assert 0.9 < tracks.reached.mean() / TRACKS < 0.99
 
 
-def test_sets_are_different_and_repeatable(tracks, water):
-    again = draw_tracks(forward_medium(water), SETS, TRACKS, LEGS, 10.0, SPLIT, 3, 5)
+def test_sets_are_different_and_repeatable(tracks, layers):
+    again = draw_tracks(layers, SETS, TRACKS, LEGS, 10.0, 3, 5)
     assert np.array_equal(again.legs, tracks.legs)
-    other = draw_tracks(forward_medium(water), SETS, TRACKS, LEGS, 10.0, SPLIT, 3, 6)
+    other = draw_tracks(layers, SETS, TRACKS, LEGS, 10.0, 3, 6)
     every = np.concatenate([tracks.legs[..., 0, 3].ravel(), other.legs[..., 0, 3].ravel()])
     assert len(np.unique(every)) > 0.999 * len(every)
 
@@ -127,7 +123,7 @@ def test_sets_are_different_and_repeatable(tracks, water):
 def test_every_track_counts_alike(reached):
     """Over all places the weights add up to 1/100 for each of 100 tracks, hence to one."""
     lost_rarely = Tracks(
-        np.zeros((1, 100, 2, 4), np.float32), np.empty((1, 100), np.int64), np.array([reached])
+        np.zeros((1, 100, 2, 4), np.float32), np.zeros((1, 100, 2)), np.array([reached])
     )
     places = (np.arange(40_000) + 0.5) / 40_000
     found = [chosen(lost_rarely, 0, place) for place in places]
@@ -139,11 +135,11 @@ def test_every_track_counts_alike(reached):
 
 
 @kernel
-def frames_around(dx, dy, dz, circle, count):
-    state, frames = np.empty(2, np.uint64), np.empty((count, 6))
+def frames_of(dx, dy, dz, circle, count):
+    state, frames = np.empty(2, np.uint64), np.empty((count, 9))
     start_stream(state, 1, 2, 3, 4, 5)
     for i in range(count):
-        frames[i] = axes_around(dx, dy, dz, circle, state)
+        frames[i] = frame_around(dx, dy, dz, circle, state)
     return frames
 
 
@@ -151,8 +147,9 @@ def frames_around(dx, dy, dz, circle, count):
 def test_axes_make_a_frame_around_a_direction(direction):
     """Right-handed, orthonormal, and at every azimuth alike: 4 standard errors of 10,000."""
     azimuth = 2.0 * np.pi * np.arange(256) / 256
-    frames = frames_around(*direction, np.column_stack([np.cos(azimuth), np.sin(azimuth)]), 10_000)
-    a, b = frames[:, :3], frames[:, 3:]
+    frames = frames_of(*direction, np.column_stack([np.cos(azimuth), np.sin(azimuth)]), 10_000)
+    a, b, c = frames[:, :3], frames[:, 3:6], frames[:, 6:]
+    assert np.array_equal(c, np.tile(direction, (len(c), 1)))
     assert np.linalg.norm(a, axis=1) == pytest.approx(1.0, abs=1e-12)
     assert np.linalg.norm(b, axis=1) == pytest.approx(1.0, abs=1e-12)
     assert np.cross(a, b) == pytest.approx(np.tile(direction, (len(a), 1)), abs=1e-12)
@@ -161,7 +158,7 @@ def test_axes_make_a_frame_around_a_direction(direction):
     assert a.T @ a / len(a) == pytest.approx(0.5 * spread, abs=4.0 / 100.0)
 
 
-def test_streams_of_tracks_have_their_own_addresses(water, monkeypatch):
+def test_streams_of_tracks_have_their_own_addresses(layers, monkeypatch):
     """No two tracks of two frames draw the same numbers."""
     addresses = []
 
@@ -171,6 +168,6 @@ def test_streams_of_tracks_have_their_own_addresses(water, monkeypatch):
 
     monkeypatch.setattr(tracks_module, "start_stream", noted)
     for frame in (0, 1):
-        draw_tracks.py_func(forward_medium(water), 4, 16, 6, 10.0, SPLIT, 3, frame)
+        draw_tracks.py_func(layers, 4, 16, 6, 10.0, 3, frame)
     assert len(set(addresses)) == len(addresses) == 2 * 4 * 16
     assert {address[1] for address in addresses} == {TRACKS_PURPOSE}
