@@ -228,7 +228,7 @@ def _gated(echo: FloatArray, gate: NDArray[np.int64]) -> FloatArray:
 def _traced(mission: Mission, walks: int, frame: int) -> TextbookFlash:
     engine = mission.engine
     return textbook_flash(
-        water=engine.water,
+        water=engine.water.surface,
         depth=-float(mission.seabed.mesh.vertices[:, 2].mean()),
         reflectance=float(mission.seabed.reflectance.mean()),
         laser=engine.laser,
