@@ -17,6 +17,7 @@ from survey.cloud.raw import RawReadings, raw_readings
 from survey.flight.pose import Frame, Pose
 from survey.flight.trajectory import footprints, require_air
 from survey.optics.background import background_power
+from survey.optics.water import WaterColumn
 from survey.products.run_products import ProductSettings
 from survey.scenario import components
 from survey.scenario.scenario import Scenario
@@ -98,7 +99,7 @@ def prepare(scenario: Scenario) -> Mission:
     seabed = components.seabed(scenario)
     seabed.require_coverage(footprints(camera, frames, surface.lowest_level))
     require_air(frames, highest=seabed.grid.z_high)
-    engine_over = partial(_engine, scenario, seabed)
+    engine_over = partial(_engine, scenario, seabed, water)
     return Mission(
         frames=frames,
         camera=camera,
@@ -129,12 +130,13 @@ def prepare(scenario: Scenario) -> Mission:
 def posed_noise(scenario: Scenario, frame: Frame, sea: SeaSurface) -> PosedNoise:
     """Return what a flash reads over water without a bottom, and the thresholds above it.
 
-    The expected column is that of the scenario's water, from flashes of its own over a bottom that
+    The column is that of the water that is expected, from flashes of its own over a bottom that
     nothing can reach; a survey would know it from its deep water. Of resolved waves it knows the
     slopes' statistics alone: all of them stand on the mean level.
     """
     level_sea = replace(sea, waves=None)
-    engine = _engine(scenario, _unreachable_bottom(scenario), level_sea)
+    water = components.expected_water(scenario)
+    engine = _engine(scenario, _unreachable_bottom(scenario), water, level_sea)
     pose = Pose(
         position=np.array([0.0, 0.0, frame.measured.position[2]]),
         roll=0.0,
@@ -197,13 +199,13 @@ def _mean_flash(engine: Engine, pose: Pose) -> tuple[FloatArray, FloatArray, Flo
     return light, surface, variance
 
 
-def _engine(scenario: Scenario, seabed: Seabed, surface: SeaSurface) -> Engine:
+def _engine(scenario: Scenario, seabed: Seabed, water: WaterColumn, surface: SeaSurface) -> Engine:
     receiver = components.receiver(scenario)
     efficiency = components.detector(scenario).photo_electrons_per_photon
     return Engine(
         seabed=seabed,
         surface=surface,
-        water=components.water(scenario),
+        water=water,
         laser=components.laser(scenario),
         camera=components.camera(scenario),
         receiver=receiver,

@@ -18,6 +18,7 @@ from survey.scenario.sun import (
     water_reflectance,
 )
 from survey.scenario.times import gate_start_ns
+from survey.scenario.water_sections import WaterSection
 
 if TYPE_CHECKING:
     import numpy as np
@@ -110,11 +111,20 @@ def detector(scenario: Scenario) -> Detector:
 
 def water(scenario: Scenario) -> WaterColumn:
     """Return the water with its layers."""
+    return _column(scenario, scenario.water)
+
+
+def expected_water(scenario: Scenario) -> WaterColumn:
+    """Return the water that thresholds are made for: with its layers, or without."""
+    if scenario.processing.expects_layers:
+        return water(scenario)
+    return _column(scenario, scenario.water.model_copy(update={"layers": []}))
+
+
+def _column(scenario: Scenario, given: WaterSection) -> WaterColumn:
     from survey.scenario.water_column_parts import build_column
 
-    return build_column(
-        scenario.water, wavelength_nm=scenario.laser.wavelength_nm, folder=scenario.folder
-    )
+    return build_column(given, wavelength_nm=scenario.laser.wavelength_nm, folder=scenario.folder)
 
 
 def sea_surface(scenario: Scenario) -> SeaSurface:

@@ -132,12 +132,14 @@ class Processing(Section):
     """From counts to points and grids; without `echo_gate_ns` an echo is one pulse width long.
 
     `water_level_error_m` is how far the level that is expected, before the first echoes tell it,
-    lies above the true one. `keep_waveforms` keeps the detector's histograms and time tags in the
-    frames' files: of one pixel in 8 x 8, or of all.
+    lies above the true one. Thresholds are made for the water with its layers, unless
+    `expects_layers` is false: then for that of [water] alone. `keep_waveforms` keeps the detector's
+    histograms and time tags in the frames' files: of one pixel in 8 x 8, or of all.
     """
 
     false_alarm_rate: Annotated[float, Field(gt=0.0, lt=1.0)] = 1e-3
     echo_gate_ns: Positive | None = None
+    expects_layers: bool = True
     water_level_error_m: Annotated[float, Field(ge=-10.0, le=10.0)] = 0.0
     thinning_m: NotNegative = 1.0
     grid_m: Positive = 2.0
