@@ -47,6 +47,9 @@ def water_response(water: WaterColumn, illumination: Illumination) -> WaterRespo
     mixed in logarithms as b / a lies between theirs, and the column is scaled by b p(180 deg) of
     the water at z. Uniform coastal water, made so from the other two, is right to 7 % in the depth
     from which as much light comes back; its column comes out up to 3 times too bright.
+    Through layers (a plume of 1.5 m on clear water, sediment of 1.5 m under coastal water, two
+    others) the bottom's light was right to 20 %, the column's to a factor of 2 down to the end of a
+    layer and of 2.6 below it.
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ def test_every_scenario_is_sound_and_says_what_to_expect(name: str) -> None:
 
 def test_the_gallery_is_complete() -> None:
     names = {"measured-seabed", "sandbar", "wreck", "turned-footprint", "too-deep"}
-    names |= {"rolling-aircraft", "area-survey", "harbor-wreck", "reef-with-swell"}
+    names |= {"rolling-aircraft", "area-survey", "harbor-wreck", "reef-with-swell", "turbid-layer"}
     assert names | PAPER.keys() <= gallery().keys()
 
 
@@ -151,6 +151,19 @@ def test_harbor_wreck_s_line_sees_all_that_its_basin_is_made_of() -> None:
         for c in cubes
     ]
     assert tops == pytest.approx([-4.0 + cube.side_m for cube in cubes], abs=0.3)
+
+
+def test_turbid_layer_has_its_troughs_in_the_layer_and_its_crests_above_it() -> None:
+    scenario = load_scenario("turbid-layer")
+    corners = np.concatenate(outlines_on_map(scenario)) - components.map_frame(scenario).origin[:2]
+    east, north = (np.linspace(low, high, 100) for low, high in zip(corners.min(0), corners.max(0)))
+    places = np.meshgrid(east, north)
+    bed = components.seabed(scenario).elevation_at(places[0].ravel(), places[1].ravel())
+    assert (bed.min(), bed.max()) == pytest.approx((-10.25, -7.75), abs=0.05)
+    _, layer = components.water(scenario).layers
+    assert layer.top == 8.5
+    assert 0.6 < (bed < -layer.top).mean() < 0.7
+    assert components.expected_water(scenario).is_uniform
 
 
 @pytest.mark.parametrize(("name", "water"), PAPER.items())
