@@ -156,9 +156,8 @@ def test_harbor_wreck_s_line_sees_all_that_its_basin_is_made_of() -> None:
 def test_turbid_layer_has_its_troughs_in_the_layer_and_its_crests_above_it() -> None:
     scenario = load_scenario("turbid-layer")
     corners = np.concatenate(outlines_on_map(scenario)) - components.map_frame(scenario).origin[:2]
-    east, north = (np.linspace(low, high, 100) for low, high in zip(corners.min(0), corners.max(0)))
-    places = np.meshgrid(east, north)
-    bed = components.seabed(scenario).elevation_at(places[0].ravel(), places[1].ravel())
+    east, north = np.meshgrid(*np.linspace(corners.min(axis=0), corners.max(axis=0), 100).T)
+    bed = components.seabed(scenario).elevation_at(east.ravel(), north.ravel())
     assert (bed.min(), bed.max()) == pytest.approx((-10.25, -7.75), abs=0.05)
     _, layer = components.water(scenario).layers
     assert layer.top == 8.5
