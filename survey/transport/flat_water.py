@@ -16,7 +16,6 @@ from survey.optics.interface import fresnel_reflectance, refracted
 from survey.optics.phase import PhaseFunction
 from survey.transport.launch import Optics, direction_of, pixel_at
 from survey.transport.random import uniform
-from survey.transport.scene import Medium
 from terrain.kernels import leaf_kernel
 
 FloatArray = NDArray[np.float64]
@@ -115,14 +114,11 @@ def seen_along(optics: Optics, ux: float, uy: float, uz: float) -> int:
 
 
 @leaf_kernel
-def way_to_event(
-    medium: Medium, depth: float, free_path: float, z: float, dz: float
-) -> tuple[float, bool]:
+def way_to_event(depth: float, free: float, z: float, dz: float) -> tuple[float, bool]:
     """Way to the next event [m] and whether it is a scattering, not surface or bottom.
 
-    ``free_path`` is the optical path to the next scattering [1].
+    ``free`` is the way to the next scattering [m].
     """
-    free = free_path / medium.scattering if medium.scattering > 0.0 else math.inf
     wall = -z / dz if dz > 0.0 else (-depth - z) / dz if dz < 0.0 else math.inf
     return min(free, wall), free < wall
 

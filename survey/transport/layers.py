@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.constants import speed_of_light
 
 from survey.optics.water import WaterColumn
-from terrain.kernels import inlined_kernel
+from terrain.kernels import inlined_kernel, leaf_kernel
 
 FloatArray = NDArray[np.float64]
 
@@ -42,8 +42,8 @@ def kernel_layers(column: WaterColumn) -> Layers:
     """Return a water column as kernels take it; each phase function is tabled once."""
     waters = [layer.water for layer in column.layers]
     tops = np.array([layer.top for layer in column.layers])
-    phases = {id(water.phase_function): water.phase_function for water in waters}
-    numbers = {key: number for number, key in enumerate(phases)}
+    phases = column.phase_functions
+    numbers = {id(phase): number for number, phase in enumerate(phases)}
     return Layers(
         tops=tops,
         absorption=np.array([water.absorption for water in waters]),
@@ -51,14 +51,14 @@ def kernel_layers(column: WaterColumn) -> Layers:
         absorbed=column.absorbed(tops),
         scattered=column.scattered(tops),
         phase=np.array([numbers[id(water.phase_function)] for water in waters], np.int64),
-        samplers=np.array([phase.sampler_table() for phase in phases.values()]),
-        densities=np.array([phase.cosine_table() for phase in phases.values()]),
+        samplers=np.array([phase.sampler_table() for phase in phases]),
+        densities=np.array([phase.cosine_table() for phase in phases]),
         speed=speed_of_light / column.group_index,
         refractive_index=column.refractive_index,
     )
 
 
-@inlined_kernel
+@leaf_kernel
 def last_at(sorted_values: FloatArray, value: float) -> int:
     """Index of the last of ascending values that is not above ``value``; 0 if all are."""
     low, high = 0, sorted_values.shape[0]
@@ -79,14 +79,29 @@ def free_path(layers: Layers, depth: float, sinking: float, optical: float) -> f
     """
     if layers.tops.shape[0] == 1:
         return float(optical / layers.scattering[0])
-    i = last_at(layers.tops, depth)
+    return free_path_in_layers(
+        layers.tops, layers.scattering, layers.scattered, depth, sinking, optical
+    )
+
+
+@leaf_kernel
+def free_path_in_layers(
+    tops: FloatArray,
+    scattering: FloatArray,
+    scattered: FloatArray,
+    depth: float,
+    sinking: float,
+    optical: float,
+) -> float:
+    """Way as `free_path` tells it, in more layers than one [m]."""
+    i = last_at(tops, depth)
     if abs(sinking) < LEVEL:
-        return float(optical / layers.scattering[i])
-    at = layers.scattered[i] + layers.scattering[i] * (depth - layers.tops[i]) + optical * sinking
-    j = last_at(layers.scattered, at)
-    if layers.scattering[j] == 0.0:
+        return float(optical / scattering[i])
+    at = scattered[i] + scattering[i] * (depth - tops[i]) + optical * sinking
+    j = last_at(scattered, at)
+    if scattering[j] == 0.0:
         return math.inf
-    reached = layers.tops[j] + (at - layers.scattered[j]) / layers.scattering[j]
+    reached = tops[j] + (at - scattered[j]) / scattering[j]
     return float(max(0.0, (reached - depth) / sinking))
 
 
@@ -105,18 +120,31 @@ def crossed(
     """
     if layers.tops.shape[0] == 1:
         return float(coefficient[0] * length)
-    i = last_at(layers.tops, depth)
+    return crossed_layers(layers.tops, coefficient, to_top, depth, sinking, length)
+
+
+@leaf_kernel
+def crossed_layers(
+    tops: FloatArray,
+    coefficient: FloatArray,
+    to_top: FloatArray,
+    depth: float,
+    sinking: float,
+    length: float,
+) -> float:
+    """Integral as `crossed` tells it, in more layers than one [1]."""
+    i = last_at(tops, depth)
     if abs(sinking) < LEVEL:
         return float(coefficient[i] * length)
     below = depth + sinking * length
-    j = last_at(layers.tops, below)
-    start = to_top[i] + coefficient[i] * (depth - layers.tops[i])
-    end = to_top[j] + coefficient[j] * (below - layers.tops[j])
+    j = last_at(tops, below)
+    start = to_top[i] + coefficient[i] * (depth - tops[i])
+    end = to_top[j] + coefficient[j] * (below - tops[j])
     return float((end - start) / sinking)
 
 
 @inlined_kernel
-def bend_of(layers: Layers, depth: float, chance: float) -> float:
+def bend_at(layers: Layers, depth: float, chance: float) -> float:
     """Return 1 - cos of the angle below which a share ``chance`` of all scattering there goes."""
     table = layers.samplers[layers.phase[last_at(layers.tops, depth)]]
     place = chance * (table.shape[0] - 1)
@@ -125,7 +153,7 @@ def bend_of(layers: Layers, depth: float, chance: float) -> float:
 
 
 @inlined_kernel
-def density_of(layers: Layers, depth: float, cosine: float) -> float:
+def density_at(layers: Layers, depth: float, cosine: float) -> float:
     """Phase function of the water at a depth, at the cosine of a wide angle [1/sr]."""
     table = layers.densities[layers.phase[last_at(layers.tops, depth)]]
     place = max(0.0, 0.5 * (cosine + 1.0) * (table.shape[0] - 1))

@@ -21,7 +21,7 @@ from scipy.constants import speed_of_light
 from survey.optics.interface import fresnel_reflectance, reflected
 from survey.transport.beam import Ray, light_on_water, ray_to
 from survey.transport.launch import Optics
-from survey.transport.layers import Layers, crossed, density_of, free_path
+from survey.transport.layers import Layers, crossed, density_at, free_path
 from survey.transport.random import uniform
 from survey.transport.scene import FOLLOWED, Scene
 from survey.transport.sheet import crest_or_trough, through_waves
@@ -312,7 +312,7 @@ def add_column(
             layers, layers.absorption, layers.absorbed, scene.sea.level - back[2], -back[5], to
         )
         photons = method.photons * strength * light * sight.importance * abs(back[8])
-        photons *= method.spacing * density_of(layers, depth, cosine)
+        photons *= method.spacing * density_at(layers, depth, cosine)
         deposit(
             tally, COLUMN, sight.batch,
             sight.time + in_air / speed_of_light + whole / layers.speed,

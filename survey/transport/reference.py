@@ -22,11 +22,11 @@ from scipy.constants import speed_of_light
 
 from survey.flight.pose import Pose
 from survey.optics.interface import fresnel_reflectance, reflected, refracted
-from survey.optics.water import Water
+from survey.optics.water import Water, WaterColumn
 from survey.sensor.camera import Camera
 from survey.sensor.laser import Laser
 from survey.sensor.receiver import Receiver
-from survey.transport.directions import drawn, lambert_direction, turned
+from survey.transport.directions import lambert_direction, turned
 from survey.transport.engine import kernel_optics
 from survey.transport.flat_water import (
     BOTTOM,
@@ -38,8 +38,8 @@ from survey.transport.flat_water import (
     way_to_event,
 )
 from survey.transport.launch import Optics, direction_of
+from survey.transport.layers import Layers, bend_at, crossed, free_path, kernel_layers, last_at
 from survey.transport.random import REFERENCE, exponential, start_stream, uniform
-from survey.transport.scene import Medium, forward_medium
 from survey.transport.tally import TimeBins, deposit_in
 from terrain.kernels import kernel, leaf_kernel
 
@@ -76,7 +76,13 @@ def _line_of_view(
 
 @leaf_kernel
 def _scattered(
-    medium: Medium, table: FloatArray, state: NDArray[np.uint64], dx: float, dy: float, dz: float
+    layers: Layers,
+    depth: float,
+    table: FloatArray,
+    state: NDArray[np.uint64],
+    dx: float,
+    dy: float,
+    dz: float,
 ) -> tuple[float, float, float, float]:
     """Draw a new direction; one in five is aimed upwards, and the weight makes up for it.
 
@@ -87,7 +93,7 @@ def _scattered(
     if uniform(state) < AIMED:
         nx, ny, nz = turned(0.0, 0.0, 1.0, AIMED_WITHIN * uniform(state), azimuth)
     else:
-        nx, ny, nz = turned(dx, dy, dz, drawn(medium.sampler, 1.0, state), azimuth)
+        nx, ny, nz = turned(dx, dy, dz, bend_at(layers, depth, uniform(state)), azimuth)
     aimed = 1.0 / (2.0 * math.pi * AIMED_WITHIN) if 1.0 - nz <= AIMED_WITHIN else 0.0
     density = density_between(dx, dy, dz, nx, ny, nz, table)
     return nx, ny, nz, density / ((1.0 - AIMED) * density + AIMED * aimed)
@@ -98,8 +104,7 @@ def _score_straight_exit(
     histogram: FloatArray,
     bins: TimeBins,
     optics: Optics,
-    medium: Medium,
-    attenuation: float,
+    layers: Layers,
     state: NDArray[np.uint64],
     x: float,
     y: float,
@@ -119,7 +124,7 @@ def _score_straight_exit(
     """
     forward = (2.0 * uniform(state) - 1.0) * optics.half_forward
     right = (2.0 * uniform(state) - 1.0) * optics.half_right
-    wx, wy, wz, ax, ay, az, solid = _line_of_view(optics, medium.refractive_index, forward, right)
+    wx, wy, wz, ax, ay, az, solid = _line_of_view(optics, layers.refractive_index, forward, right)
     sent = wz / math.pi
     if scatters:
         if dx * wx + dy * wy + dz * wz >= peak_cosine:
@@ -129,9 +134,11 @@ def _score_straight_exit(
     length = _reaches_aperture(optics, x + wx * slant, y + wy * slant, 0.0, ax, ay, az)
     if length < 0.0:
         return
-    passed = 1.0 - fresnel_reflectance(az, 1.0 / medium.refractive_index)
-    score = weight * sent * solid * passed * math.exp(-attenuation * slant)
-    deposit_in(histogram, 0, bins, time + slant / medium.speed + length / speed_of_light, score)
+    dimmed = crossed(layers, layers.absorption, layers.absorbed, depth, -wz, slant)
+    dimmed += crossed(layers, layers.scattering, layers.scattered, depth, -wz, slant)
+    passed = 1.0 - fresnel_reflectance(az, 1.0 / layers.refractive_index)
+    score = weight * sent * solid * passed * math.exp(-dimmed)
+    deposit_in(histogram, 0, bins, time + slant / layers.speed + length / speed_of_light, score)
 
 
 @leaf_kernel
@@ -139,7 +146,7 @@ def _count_arrival(
     histogram: FloatArray,
     bins: TimeBins,
     optics: Optics,
-    medium: Medium,
+    layers: Layers,
     x: float,
     y: float,
     dx: float,
@@ -149,7 +156,7 @@ def _count_arrival(
     time: float,
 ) -> None:
     """Count light that leaves the water if it hits the aperture within the field of view."""
-    ux, uy, uz = refracted(dx, dy, dz, 0.0, 0.0, -1.0, medium.refractive_index)
+    ux, uy, uz = refracted(dx, dy, dz, 0.0, 0.0, -1.0, layers.refractive_index)
     length = _reaches_aperture(optics, x, y, 0.0, ux, uy, uz)
     if length < 0.0:
         return
@@ -163,47 +170,49 @@ def _follow(
     bottom: FloatArray,
     bins: TimeBins,
     optics: Optics,
-    medium: Medium,
+    layers: Layers,
     depth: float,
     rho: float,
-    table: FloatArray,
+    tables: FloatArray,
     peak_cosine: float,
     latest: float,
     state: NDArray[np.uint64],
     photons: float,
 ) -> None:
     """Follow one photon through flat water of uniform depth, the surface at up = 0."""
-    attenuation = medium.attenuation + medium.scattering
-    x, y, dx, dy, dz, weight, time = enter_flat_water(optics, medium.refractive_index, state)
+    x, y, dx, dy, dz, weight, time = enter_flat_water(optics, layers.refractive_index, state)
     weight *= photons
     z, into, estimated = 0.0, column, True
     while time < latest and weight > 0.0:
-        step, scatters = way_to_event(medium, depth, exponential(state), z, dz)
+        free = free_path(layers, -z, -dz, exponential(state))
+        step, scatters = way_to_event(depth, free, z, dz)
+        absorbed = crossed(layers, layers.absorption, layers.absorbed, -z, -dz, step)
         x, y, z = x + dx * step, y + dy * step, z + dz * step
-        time += step / medium.speed
-        weight *= math.exp(-medium.attenuation * step)
+        time += step / layers.speed
+        weight *= math.exp(-absorbed)
         if scatters:
+            table = tables[layers.phase[last_at(layers.tops, -z)]]
             _score_straight_exit(
-                into, bins, optics, medium, attenuation, state, x, y, -z, dx, dy, dz,
+                into, bins, optics, layers, state, x, y, -z, dx, dy, dz,
                 table, peak_cosine, True, weight, time,
             )  # fmt: skip
             ox, oy, oz = dx, dy, dz
-            dx, dy, dz, factor = _scattered(medium, table, state, dx, dy, dz)
+            dx, dy, dz, factor = _scattered(layers, -z, table, state, dx, dy, dz)
             weight *= factor
             estimated = ox * dx + oy * dy + oz * dz < peak_cosine
         elif dz < 0.0:
             into, z, estimated = bottom, -depth, True
             weight *= rho
             _score_straight_exit(
-                into, bins, optics, medium, attenuation, state, x, y, depth, dx, dy, dz,
-                table, peak_cosine, False, weight, time,
+                into, bins, optics, layers, state, x, y, depth, dx, dy, dz,
+                tables[0], peak_cosine, False, weight, time,
             )  # fmt: skip
             dx, dy, dz = lambert_direction(0.0, 0.0, 1.0, state)
         else:
             z = 0.0
-            if uniform(state) >= fresnel_reflectance(dz, medium.refractive_index):
+            if uniform(state) >= fresnel_reflectance(dz, layers.refractive_index):
                 if not estimated:
-                    _count_arrival(into, bins, optics, medium, x, y, dx, dy, dz, weight, time)
+                    _count_arrival(into, bins, optics, layers, x, y, dx, dy, dz, weight, time)
                 return
             dx, dy, dz = reflected(dx, dy, dz, 0.0, 0.0, 1.0)
 
@@ -214,10 +223,10 @@ def _batch(
     bottom: FloatArray,
     bins: TimeBins,
     optics: Optics,
-    medium: Medium,
+    layers: Layers,
     depth: float,
     rho: float,
-    table: FloatArray,
+    tables: FloatArray,
     peak_cosine: float,
     latest: float,
     seed: int,
@@ -229,14 +238,14 @@ def _batch(
     for i in range(walks):
         start_stream(state, seed, REFERENCE, 0, batch, i)
         _follow(
-            column, bottom, bins, optics, medium, depth, rho, table, peak_cosine, latest, state,
+            column, bottom, bins, optics, layers, depth, rho, tables, peak_cosine, latest, state,
             photons / walks,
         )  # fmt: skip
 
 
 def reference_flash(
     *,
-    water: Water,
+    water: Water | WaterColumn,
     depth: float,
     reflectance: float,
     laser: Laser,
@@ -251,11 +260,12 @@ def reference_flash(
 ) -> FloatArray:
     """Return photons through the aperture, pooled over all pixels, without the pulse's width.
 
-    The water is uniform, its surface flat at up = 0, its bottom flat and Lambertian.
+    The water's surface is flat at up = 0, its bottom flat and Lambertian.
 
     Parameters
     ----------
-    water : Water
+    water : Water or WaterColumn
+        At all depths, or by depth.
     depth, reflectance : float
         Depth [m] and reflectance [1] of the bottom.
     laser, camera, receiver, pose
@@ -274,13 +284,15 @@ def reference_flash(
     """
     optics = kernel_optics(camera=camera, receiver=receiver, pose=pose)
     bins = TimeBins(receiver.gate_start, receiver.bin_width, receiver.bins)
-    medium, table = forward_medium(water), density_table(water.phase_function)
+    column = WaterColumn.uniform(water) if isinstance(water, Water) else water
+    layers = kernel_layers(column)
+    tables = np.array([density_table(phase) for phase in column.phase_functions])
     result = np.zeros((batches, 2, receiver.bins))
 
     def run(batch: int) -> None:
         _batch(
             result[batch, COLUMN : COLUMN + 1], result[batch, BOTTOM : BOTTOM + 1], bins, optics,
-            medium, depth, reflectance, table, math.cos(peak_angle), receiver.gate_end,
+            layers, depth, reflectance, tables, math.cos(peak_angle), receiver.gate_end,
             seed, batch, walks_per_batch, laser.photons_per_pulse,
         )  # fmt: skip
 

@@ -151,7 +151,7 @@ def _follow(
     roulette_below = ROULETTE_BELOW * weight
     z, origin = 0.0, COLUMN
     while time < latest and weight > 0.0:
-        step, scatters = way_to_event(medium, depth, exponential(state), z, dz)
+        step, scatters = way_to_event(depth, exponential(state) / medium.scattering, z, dz)
         x, y, z = x + dx * step, y + dy * step, z + dz * step
         time += step / medium.speed
         weight *= math.exp(-medium.attenuation * step)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from survey.optics.interface import reflected
 from survey.transport.directions import turned
-from survey.transport.layers import Layers, bend_of, free_path
+from survey.transport.layers import Layers, bend_at, free_path
 from survey.transport.random import TRACKS, exponential, start_stream, uniform
 from terrain.kernels import inlined_kernel, kernel, leaf_kernel
 
@@ -75,7 +75,7 @@ def direction_along(
     """Return a leg's direction; it begins at a depth, ``turning`` from d or going on along it."""
     if layers.samplers.shape[0] > 1:
         if turning:
-            return turned(dx, dy, dz, bend_of(layers, depth, row[0]), row[1])
+            return turned(dx, dy, dz, bend_at(layers, depth, row[0]), row[1])
         return dx, dy, dz
     ax, ay, az, bx, by, bz, cx, cy, cz = frame
     return (
@@ -134,7 +134,7 @@ def draw_tracks(
                 if several:
                     unordered[j, k] = chance, azimuth, 0.0, optical
                     continue
-                dx, dy, dz = turned(dx, dy, dz, bend_of(layers, 0.0, chance), azimuth)
+                dx, dy, dz = turned(dx, dy, dz, bend_at(layers, 0.0, chance), azimuth)
                 unordered[j, k] = dx, dy, dz, optical
             path[j], strayed[j, 0], strayed[j, 1] = way_to(layers, depth, unordered[j])
         order = np.argsort(path, kind="mergesort")

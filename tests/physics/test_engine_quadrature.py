@@ -6,12 +6,15 @@ Rays are traced by numpy alone. How densely they fall comes from differences of 
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from scipy.constants import speed_of_light
 
 from survey.optics.interface import fresnel_reflectance
+from survey.optics.phase import petzold
+from survey.optics.water import WaterColumn, petzold_water
 
 DEPTH, REFLECTANCE, INDEX, HEIGHT = 10.0, 0.1, 1.33, 200.0
 GAUSS = np.array([-0.5, 0.5]) / np.sqrt(3.0)
@@ -70,7 +73,7 @@ def there_and_back(engine, pose, forward, right, depth):
         * etendue
         * passed
         / INDEX**2
-        * np.exp(-2.0 * engine.water.surface.absorption * in_water)
+        * np.exp(-2.0 * engine.water.absorbed(depth) / depth * in_water)
     )
 
 
@@ -95,22 +98,42 @@ def test_unscattered_light_of_a_rolled_sensor(engine_of, rolled):
     assert off.std() < 0.3e-9
 
 
-def test_singly_scattered_light_of_a_rolled_sensor(engine_of, rolled):
+FAINT = petzold_water(
+    "coastal", absorption=0.02, scattering=1e-4, refractive_index=INDEX, group_index=INDEX
+)
+UNIFORM = WaterColumn.uniform(FAINT)
+# Brighter water that sends back by another phase function, between 4 and 7 m.
+LAYERED = UNIFORM.with_layer(
+    replace(FAINT, absorption=0.2, scattering=3e-4, phase_function=petzold("clear")),
+    top=4.0,
+    bottom=7.0,
+)
+
+
+def depths_in(column):
+    """Return depths down to the bottom and their weights, eight a layer."""
+    tops = [layer.top for layer in column.layers]
+    points, weights = np.polynomial.legendre.leggauss(8)
+    for top, bottom in pairwise([*tops, DEPTH]):
+        half = 0.5 * (bottom - top)
+        yield from zip(top + half * (points + 1.0), half * weights, strict=True)
+
+
+@pytest.mark.parametrize("column", [UNIFORM, LAYERED], ids=["uniform", "layered"])
+def test_singly_scattered_light_of_a_rolled_sensor(engine_of, rolled, column):
     """The column down to 10 m, left, middle and right, against the integral over depth: 0.1 %.
 
     Light and sight go along one ray, which stays 1 / cos as long in a layer as an upright one and
     crosses 1 / cos as little area: leaving out either is 5 to 9 %.
     """
-    scattering = 1e-4
     engine = engine_of(
-        absorption=0.02, scattering=scattering, wind_speed=0.0, reflectance=0.0, bins=500,
-        column_spacing=0.02,
-    )  # fmt: skip
+        column=column, wind_speed=0.0, reflectance=0.0, bins=500, column_spacing=0.02
+    )
     forward, right = samples(engine.camera)
-    backwards = scattering * float(engine.water.surface.phase_function.density(np.pi))
-    depths, weights = np.polynomial.legendre.leggauss(8)
     expected = np.zeros(forward.shape)
-    for depth, weight in zip(0.5 * DEPTH * (depths + 1.0), 0.5 * DEPTH * weights, strict=True):
+    for depth, weight in depths_in(column):
+        water = column.at(depth)
+        backwards = water.scattering * float(water.phase_function.density(np.pi))
         cosine_water = trace(rolled, forward, right, depth)[2]
         light = there_and_back(engine, rolled, forward, right, depth)
         expected += weight * backwards * light / cosine_water**2

@@ -13,13 +13,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from survey.optics.water import petzold_water
 from survey.transport.engine import Engine
 from survey.transport.settings import TransportSettings
 from terrain.generators import Ground, plane
 from terrain.map_frame import MapFrame
 from terrain.sea_surface import SeaSurface
-from tests.regression import reference_coastal as reference
+from tests.regression import reference_flashes as reference
 
 FLASHES = 48
 TOLERANCE = 0.02
@@ -29,16 +28,14 @@ QUANTILE = 3.5
 WORK = {"walks_per_pixel": 16, "tracks_per_replicate": 4096}
 
 
-def fast_bands(flashes_flown: int = FLASHES, **settings: Any) -> np.ndarray:
+def fast_bands(water: str, flashes_flown: int = FLASHES, **settings: Any) -> np.ndarray:
     """Return photons (flashes, column and bottom, bands) of the fast engine."""
     frame = MapFrame(easting=0.0, northing=0.0, epsg=25832, vertical_epsg=5714)
     ground = Ground(map_frame=frame, length=800.0, width=800.0, reflectance=reference.REFLECTANCE)
     engine = Engine(
         seabed=plane(ground=ground, depth=reference.DEPTH),
         surface=SeaSurface.from_wind(level=0.0, wind_speed=0.0, wind_from=0.0),
-        water=petzold_water(
-            "coastal", refractive_index=reference.INDEX, group_index=reference.INDEX
-        ),
+        water=reference.WATERS[water],
         laser=reference.LASER,
         camera=reference.CAMERA,
         receiver=reference.RECEIVER,
@@ -52,9 +49,9 @@ def fast_bands(flashes_flown: int = FLASHES, **settings: Any) -> np.ndarray:
     )
 
 
-@pytest.fixture(scope="module")
-def stored() -> dict[str, np.ndarray]:
-    content = json.loads(reference.STORED.read_text(encoding="utf-8"))
+def stored(water: str) -> dict[str, np.ndarray]:
+    """Return what the reference engine said."""
+    content = json.loads(reference.stored_file(water).read_text(encoding="utf-8"))
     return {name: np.array(value) for name, value in content.items() if name != "what"}
 
 
@@ -76,27 +73,32 @@ def assert_equivalent(fast: np.ndarray, stored: dict[str, np.ndarray]) -> None:
         assert off + QUANTILE * spread < TOLERANCE, (origin, "all", off, spread)
 
 
-def test_fast_engine_equals_reference_engine(stored):
-    """Coastal water, 10 m deep, bands of 10 ns, within 2 %."""
-    assert_equivalent(fast_bands(), stored)
+@pytest.mark.parametrize("water", reference.WATERS)
+def test_fast_engine_equals_reference_engine(water):
+    """Bottom at 10 m under coastal water and under three layers, bands of 10 ns, within 2 %."""
+    assert_equivalent(fast_bands(water), stored(water))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("degrees", [20.0, 45.0])
-def test_split_angle_does_not_matter(stored, degrees):
+def test_split_angle_does_not_matter(degrees):
     """The same at other split angles: what one walk no longer does, the other does.
 
     At 20 degrees the spikes of single paths leave 0.5 % error in a band of 48 flashes: four times
     as many are flown.
     """
-    found = fast_bands(4 * FLASHES, split_angle=np.radians(degrees))
-    assert_equivalent(found, stored)
+    found = fast_bands("coastal", 4 * FLASHES, split_angle=np.radians(degrees))
+    assert_equivalent(found, stored("coastal"))
 
 
-def test_stored_reference_is_the_engine_s_own(stored):
+@pytest.mark.parametrize("water", reference.WATERS)
+def test_stored_reference_is_the_engine_s_own(water):
     """A short run of the reference engine, other seed: pooled light within 4 standard errors."""
-    batches = reference.run_reference(batches=16, walks_per_batch=60_000, seed=3).sum(axis=-1)
+    stated = stored(water)
+    batches = reference.run_reference(water, batches=16, walks_per_batch=60_000, seed=3).sum(
+        axis=-1
+    )
     for i, origin in enumerate(("column", "bottom")):
         error = batches[:, i].std(ddof=1) / 4.0
-        assert batches[:, i].mean() == pytest.approx(stored[origin].sum(), abs=4.0 * error)
-        assert error < 0.05 * stored[origin].sum()
+        assert batches[:, i].mean() == pytest.approx(stated[origin].sum(), abs=4.0 * error)
+        assert error < 0.05 * stated[origin].sum()

@@ -98,6 +98,13 @@ class WaterColumn:
         """Group index [1]."""
         return self.surface.group_index
 
+    @property
+    def phase_functions(self) -> list[PhaseFunction]:
+        """Every phase function in the column, once."""
+        return list(
+            {id(p): p for p in (layer.water.phase_function for layer in self.layers)}.values()
+        )
+
     def at(self, depth: float) -> Water:
         """Return the water at a depth [m]."""
         return [layer.water for layer in self.layers if layer.top <= max(depth, 0.0)][-1]

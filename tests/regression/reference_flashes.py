@@ -1,13 +1,14 @@
-"""Store what the reference engine says of a uniform frame: coastal water, 10 m deep.
+"""Store what the reference engine says of uniform frames, 10 m deep: coastal water, and layers.
 
-Run it by hand after a change of the reference engine: it takes ten minutes on two cores.
+Run it by hand after a change of the reference engine: it takes ten minutes a water on two cores.
 
-    python tests/regression/reference_coastal.py
+    python tests/regression/reference_flashes.py coastal
 """
 
 from __future__ import annotations
 
 import json
+import sys
 from math import radians
 from pathlib import Path
 
@@ -16,14 +17,13 @@ from numpy.typing import NDArray
 from scipy.ndimage import convolve1d
 
 from survey.flight.pose import Pose
-from survey.optics.water import petzold_water
+from survey.optics.water import Water, WaterColumn, petzold_water
 from survey.sensor.camera import Camera
 from survey.sensor.laser import Laser
 from survey.sensor.receiver import Receiver
 from survey.transport.reference import reference_flash
 from survey.transport.waveforms import pulse_taps
 
-STORED = Path(__file__).parent / "data" / "reference_coastal_10m.json"
 DEPTH, REFLECTANCE, INDEX = 10.0, 0.1, 1.33
 BATCHES, WALKS_PER_BATCH = 64, 5_000_000
 BAND_BINS = 10
@@ -41,15 +41,36 @@ RECEIVER = Receiver(
 POSE = Pose(position=np.array([0.0, 0.0, 200.0]), roll=0.0, pitch=0.0, heading=0.0)
 
 
+def _petzold(name: str) -> Water:
+    return petzold_water(name, refractive_index=INDEX, group_index=INDEX)
+
+
+COASTAL = WaterColumn.uniform(_petzold("coastal"))
+WATERS = {
+    "coastal": COASTAL,
+    # 1 m of harbor water between coastal and clear water.
+    "layers": COASTAL.with_layer(_petzold("harbor"), top=4.0, bottom=5.0).with_layer(
+        _petzold("clear"), top=5.0
+    ),
+}
+
+
+def stored_file(water: str) -> Path:
+    """Return where the result of one of `WATERS` is kept."""
+    return Path(__file__).parent / "data" / f"reference_{water}.json"
+
+
 def bands(bins: NDArray[np.float64]) -> NDArray[np.float64]:
     """Sum the last axis over 10 ns."""
     return bins.reshape(*bins.shape[:-1], -1, BAND_BINS).sum(axis=-1)
 
 
-def run_reference(*, batches: int, walks_per_batch: int, seed: int) -> NDArray[np.float64]:
+def run_reference(
+    water: str, *, batches: int, walks_per_batch: int, seed: int
+) -> NDArray[np.float64]:
     """Return photons (batches, column and bottom, bands of 10 ns), pooled over all pixels."""
     impulse = reference_flash(
-        water=petzold_water("coastal", refractive_index=INDEX, group_index=INDEX),
+        water=WATERS[water],
         depth=DEPTH,
         reflectance=REFLECTANCE,
         laser=LASER,
@@ -65,9 +86,9 @@ def run_reference(*, batches: int, walks_per_batch: int, seed: int) -> NDArray[n
     return bands(convolve1d(impulse, pulse, axis=-1, mode="constant"))
 
 
-def main() -> None:
+def main(water: str) -> None:
     """Run the reference engine and store means and standard errors."""
-    batches = run_reference(batches=BATCHES, walks_per_batch=WALKS_PER_BATCH, seed=2017)
+    batches = run_reference(water, batches=BATCHES, walks_per_batch=WALKS_PER_BATCH, seed=2017)
     content = {
         "what": "photons through the aperture in bands of 10 ns from 1300 ns, all pixels pooled",
         "walks": BATCHES * WALKS_PER_BATCH,
@@ -76,8 +97,8 @@ def main() -> None:
         "column_error": (batches[:, 0].std(axis=0, ddof=1) / BATCHES**0.5).tolist(),
         "bottom_error": (batches[:, 1].std(axis=0, ddof=1) / BATCHES**0.5).tolist(),
     }
-    STORED.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    stored_file(water).write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1])
