@@ -27,8 +27,8 @@ from survey.transport.random import COUNTS, chance
 
 def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
     """Fly one flash: expected light, readings, ranges, points, and the truth beside them."""
-    engine, water = mission.engine, mission.engine.water
-    noise = mission.noise_at(frame.measured)
+    engine = mission.engine_at(frame.time)
+    noise = mission.noise_at(frame.measured, time=frame.time)
     waveforms = engine.flash(pose=frame.pose, frame=frame.index, time=frame.time)
     draws = chance(seed=engine.seed, purpose=COUNTS, frame=frame.index)
     readings = mission.detector.read(waveforms.total + noise.steady_light, draws)
@@ -39,8 +39,8 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
         first=first,
         frame=frame,
         rays=rays,
-        expected_level=engine.surface.level,
-        refractive_index=water.refractive_index,
+        expected_level=mission.expected_level(frame.time),
+        refractive_index=engine.water.refractive_index,
     )
     bottom = last_echo(
         counts=readings.counts,
@@ -51,7 +51,7 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
     targets = true_targets(
         seabed=mission.seabed,
         surface=engine.surface,
-        water=water,
+        water=engine.water,
         pose=frame.pose,
         rays=pixel_rays(camera=mission.camera, pose=frame.pose),
         time=frame.time,
@@ -65,7 +65,7 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
         rays=rays,
         targets=targets,
         seabed=mission.seabed,
-        group_index=water.group_index,
+        group_index=engine.water.group_index,
     )
     record = pixel_record(
         waveforms=waveforms,
@@ -74,7 +74,7 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
         points=on_bottom,
         targets=targets,
         noise=noise,
-        group_index=water.group_index,
+        group_index=engine.water.group_index,
     )
     raw = mission.raw_of(readings)
     return FrameResult(bottom=on_bottom, surface=on_surface, record=record, raw=raw)

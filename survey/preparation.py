@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from math import hypot
@@ -17,7 +17,7 @@ from survey.cloud.raw import RawReadings, raw_readings
 from survey.flight.pose import Frame, Pose
 from survey.flight.trajectory import footprints, require_air
 from survey.optics.background import background_power
-from survey.products.reach import WaterClarity
+from survey.optics.water import WaterColumn
 from survey.products.run_products import ProductSettings
 from survey.scenario import components
 from survey.scenario.scenario import Scenario
@@ -38,13 +38,20 @@ RAW_STEPS = {"none": None, "sampled": 8, "all": 1}
 
 @dataclass(frozen=True, kw_only=True)
 class Mission:
-    """The parts of a mission in SI units; `prepare` builds them."""
+    """The parts of a mission in SI units; `prepare` builds them.
+
+    `engine` and `posed_noise` are those of mean level; `level_error` is how far the expected water
+    level lies above the true one [m].
+    """
 
     frames: Sequence[Frame]
     camera: Camera
     detector: Detector
     seabed: Seabed
+    sea: SeaSurface
+    engine_over: Callable[[SeaSurface], Engine]
     engine: Engine
+    level_error: float
     posed_noise: PosedNoise
     products: ProductSettings
     raw_step: int | None
@@ -54,9 +61,18 @@ class Mission:
         """The noise model of the level sensor."""
         return self.posed_noise.level
 
-    def noise_at(self, pose: Pose) -> NoiseModel:
-        """Return the noise model at a measured pose."""
-        return self.posed_noise.at(pose)
+    def engine_at(self, time: float) -> Engine:
+        """Return the engine at the water level of a time [s]."""
+        return self.engine if self.sea.tide is None else self.engine_over(self.sea.at(time))
+
+    def expected_level(self, time: float) -> float:
+        """Return the elevation of the water that the survey expects at a time [s], [m]."""
+        return self.sea.at(time).level + self.level_error
+
+    def noise_at(self, pose: Pose, *, time: float = 0.0) -> NoiseModel:
+        """Return the noise model at a measured pose, over the level expected at a time [s]."""
+        rise = self.expected_level(time) - self.sea.level
+        return self.posed_noise.at(replace(pose, position=pose.position - [0.0, 0.0, rise]))
 
     def raw_of(self, readings: Readings) -> RawReadings | None:
         """Return the part of the readings that is kept; None where none is."""
@@ -79,16 +95,20 @@ def prepare(scenario: Scenario) -> Mission:
         With every fault, each in a line of its own.
     """
     camera, surface = components.camera(scenario), components.sea_surface(scenario)
-    frames = components.frames(scenario)
+    frames, water = components.frames(scenario), components.water(scenario)
     seabed = components.seabed(scenario)
-    seabed.require_coverage(footprints(camera, frames, surface.level))
+    seabed.require_coverage(footprints(camera, frames, surface.lowest_level))
     require_air(frames, highest=seabed.grid.z_high)
+    engine_over = partial(_engine, scenario, seabed, water)
     return Mission(
         frames=frames,
         camera=camera,
         detector=components.detector(scenario),
         seabed=seabed,
-        engine=_engine(scenario, seabed, surface),
+        sea=surface,
+        engine_over=engine_over,
+        engine=engine_over(surface),
+        level_error=scenario.processing.water_level_error_m,
         posed_noise=posed_noise(scenario, frames[0], surface),
         products=ProductSettings(
             title=scenario.mission.title,
@@ -101,7 +121,7 @@ def prepare(scenario: Scenario) -> Mission:
             survey_area=components.survey_area(scenario),
             trajectory_files=scenario.navigation.trajectory_files,
             deviations=components.navigation(scenario).deviations,
-            clarity=WaterClarity.of(components.water(scenario)),
+            water=water,
         ),
         raw_step=RAW_STEPS[scenario.processing.keep_waveforms],
     )
@@ -110,12 +130,13 @@ def prepare(scenario: Scenario) -> Mission:
 def posed_noise(scenario: Scenario, frame: Frame, sea: SeaSurface) -> PosedNoise:
     """Return what a flash reads over water without a bottom, and the thresholds above it.
 
-    The expected column is that of the scenario's water, from flashes of its own over a bottom that
+    The column is that of the water that is expected, from flashes of its own over a bottom that
     nothing can reach; a survey would know it from its deep water. Of resolved waves it knows the
     slopes' statistics alone: all of them stand on the mean level.
     """
     level_sea = replace(sea, waves=None)
-    engine = _engine(scenario, _unreachable_bottom(scenario), level_sea)
+    water = components.expected_water(scenario)
+    engine = _engine(scenario, _unreachable_bottom(scenario), water, level_sea)
     pose = Pose(
         position=np.array([0.0, 0.0, frame.measured.position[2]]),
         roll=0.0,
@@ -178,13 +199,13 @@ def _mean_flash(engine: Engine, pose: Pose) -> tuple[FloatArray, FloatArray, Flo
     return light, surface, variance
 
 
-def _engine(scenario: Scenario, seabed: Seabed, surface: SeaSurface) -> Engine:
+def _engine(scenario: Scenario, seabed: Seabed, water: WaterColumn, surface: SeaSurface) -> Engine:
     receiver = components.receiver(scenario)
     efficiency = components.detector(scenario).photo_electrons_per_photon
     return Engine(
         seabed=seabed,
         surface=surface,
-        water=components.water(scenario),
+        water=water,
         laser=components.laser(scenario),
         camera=components.camera(scenario),
         receiver=receiver,

@@ -128,10 +128,10 @@ def _require(faults: list[Fault]) -> None:
 
 def _phase_function(text: str | None) -> tuple[PhaseFunction | None, list[Fault]]:
     """Return the phase function that an option's text means, or its faults."""
+    from survey.scenario.phase_parts import build_phase_function
+    from survey.scenario.phase_rules import phase_faults
+    from survey.scenario.phase_sections import AnyPhase
     from survey.scenario.validate import validated
-    from survey.scenario.water_parts import build_phase_function
-    from survey.scenario.water_rules import phase_faults
-    from survey.scenario.water_sections import AnyPhase
 
     if text is None:
         return None, []
@@ -159,14 +159,9 @@ def _as_table(text: str) -> Any:
 
 def _beyond_the_light(water: Water, bottom_depth: float) -> list[Fault]:
     """Return the fault of a bottom from which too little comes back to be computed."""
-    from survey.optics.water.apparent import lee_diffuse_attenuation
+    from survey.optics.water.apparent import diffuse_attenuation
 
-    sunlight = lee_diffuse_attenuation(
-        absorption=water.absorption,
-        backscattering=water.scattering * water.phase_function.backscatter_fraction,
-        sun_zenith=0.0,
-    )
-    deepest = 0.5 * LARGEST_ATTENUATION / min(sunlight, water.attenuation)
+    deepest = 0.5 * LARGEST_ATTENUATION / min(diffuse_attenuation(water), water.attenuation)
     if bottom_depth <= deepest:
         return []
     return [

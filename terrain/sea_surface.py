@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+from terrain.tide import Tide
 
 if TYPE_CHECKING:
     from terrain.waves import WaveField, WaveLattice
@@ -32,6 +34,8 @@ class SeaSurface:
         Waves that light meets one by one; without them the surface is level.
     whitecap_coverage : float
         Share of the surface that is white, a Lambertian reflector of `FOAM_REFLECTANCE` [1].
+    tide : Tide, optional
+        What `at` adds to the level; without it the level stays.
     """
 
     level: float
@@ -40,6 +44,7 @@ class SeaSurface:
     wind_from: float
     waves: WaveField | None = None
     whitecap_coverage: float = 0.0
+    tide: Tide | None = None
 
     @classmethod
     def from_wind(
@@ -50,6 +55,7 @@ class SeaSurface:
         wind_from: float,
         waves: WaveField | None = None,
         whitecap_coverage: float = 0.0,
+        tide: Tide | None = None,
     ) -> SeaSurface:
         """Return the surface that Cox and Munk (1954, clean sea) measured at a wind speed.
 
@@ -73,7 +79,27 @@ class SeaSurface:
             wind_from=wind_from,
             waves=waves,
             whitecap_coverage=whitecap_coverage,
+            tide=tide,
         )
+
+    def at(self, time: float) -> SeaSurface:
+        """Return the sea at the level of a time [s], without a tide; its waves go on.
+
+        Examples
+        --------
+        >>> tide = Tide(amplitude=1.0, period=44700.0, high_water=0.0)
+        >>> sea = SeaSurface.from_wind(level=0.2, wind_speed=5.0, wind_from=0.0, tide=tide)
+        >>> sea.at(0.0).level, round(sea.at(22350.0).level, 6)
+        (1.2, -0.8)
+        """
+        if self.tide is None:
+            return self
+        return replace(self, level=self.level + self.tide.height(time), tide=None)
+
+    @property
+    def lowest_level(self) -> float:
+        """Level at low water [m]."""
+        return self.level - (0.0 if self.tide is None else self.tide.amplitude)
 
     @property
     def slope_variance(self) -> float:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from survey.cloud.georeference import WaterPath, bend_at_surface, bend_at_waves
 from survey.cloud.points import Outcome, PointClass
 from survey.flight.pose import Pose
-from survey.optics.water import Water, WaterColumn
+from survey.optics.water import WaterColumn
 from terrain.raycast import cast_rays
 from terrain.sea_surface import SeaSurface
 from terrain.substrate import UNLABELLED
@@ -58,7 +58,7 @@ def true_targets(
     *,
     seabed: Seabed,
     surface: SeaSurface,
-    water: Water | WaterColumn,
+    water: WaterColumn,
     pose: Pose,
     rays: FloatArray,
     time: float = 0.0,

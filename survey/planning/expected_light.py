@@ -30,7 +30,7 @@ class ExpectedLight:
 
     Nearest to nadir it is P = E T^2 (rho / pi) A / (n H + z)^2 with the two-way transmission of
     the water in place of exp(-2 c z). Departures: slanting light is that of a vertical path as
-    long, and Fresnel's losses are those at nadir.
+    long, which in layered water goes deeper, and Fresnel's losses are those at nadir.
 
     Parameters
     ----------

@@ -160,7 +160,7 @@ def make_plan(scenario: Scenario) -> SurveyPlan:
         pixels=camera.rows * camera.columns,
         bins=scenario.receiver.bins,
         walks_per_pixel=scenario.transport.walks_per_pixel,
-        scattering_depth=water.scattering * float(np.nan_to_num(depth[1])),
+        scattering_depth=float(water.scattered(np.nan_to_num(depth[1]))),
         model_frames=MODEL_FLASHES,
         area=bottom.swath.seen_area,
         grid=scenario.processing.grid_m,

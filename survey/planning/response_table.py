@@ -45,17 +45,6 @@ class ResponseTable:
     column_edges: FloatArray
     column: FloatArray
 
-    def stretched(self, *, shrink: float, backscatter: float) -> ResponseTable:
-        """Return a water whose lengths are these over ``shrink`` and whose column is scaled."""
-        return ResponseTable(
-            depth=self.depth / shrink,
-            two_way=self.two_way,
-            late_edges=self.late_edges / shrink,
-            late_share=self.late_share,
-            column_edges=self.column_edges / shrink,
-            column=self.column * backscatter,
-        )
-
     def two_way_at(self, depth: FloatArray) -> FloatArray:
         """Return the two-way transmission at depths; below the table it goes on as it ends."""
         logarithm = np.log(self.two_way)

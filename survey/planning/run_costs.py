@@ -13,10 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.optics.water import Water, petzold_water
+from survey.optics.water import WaterColumn
 from survey.planning.response_table import Illumination
-from survey.planning.water_response import neighbours
-from survey.products.reach import WaterClarity
+from survey.planning.water_response import named_depth, named_shares
 
 FloatArray = NDArray[np.float64]
 
@@ -100,34 +99,39 @@ def output_bytes(size: RunSize) -> float:
 
 
 def column_error(
-    water: Water, illumination: Illumination, depth: FloatArray, *, walks_per_pixel: int
+    water: WaterColumn, illumination: Illumination, depth: FloatArray, *, walks_per_pixel: int
 ) -> FloatArray:
     """Return the relative Monte Carlo error of the column in one flash and pixel [1].
 
-    Of the named water nearest by b / a, at the same K_d z; it falls with the root of the walks.
+    Of the named water nearest to that above each depth by b / a, at the same K_d z; it falls with
+    the root of the walks.
 
     Parameters
     ----------
-    water : Water
+    water : WaterColumn
     illumination : {"flood", "isolated"}
-    depth : array
+    depth : array (n,)
         [m].
     walks_per_pixel : int
 
     Examples
     --------
-    >>> coastal = petzold_water("coastal", refractive_index=1.34, group_index=1.36)
+    >>> from survey.optics.water import petzold_water
+    >>> coastal = WaterColumn.uniform(
+    ...     petzold_water("coastal", refractive_index=1.34, group_index=1.36))
     >>> few, many = (float(column_error(coastal, "flood", np.array([10.0]), walks_per_pixel=n)[0])
     ...              for n in (64, 256))
     >>> 0.1 < few < 0.5, round(few / many, 3)
     (True, 2.0)
     """
-    below, above, share = neighbours(water)
-    name = below if share < 0.5 else above
-    found = _measured()["column_error"][name]
-    named = petzold_water(name, refractive_index=1.33, group_index=1.33)
-    shrink, of_named = (WaterClarity.of(each).diffuse_attenuation for each in (water, named))
-    error = np.interp(depth * shrink / of_named, found["depth_m"], found[illumination])
+    shares = named_shares(water, depth)
+    errors = []
+    for name in shares:
+        found = _measured()["column_error"][name]
+        alike = named_depth(water, depth, name)
+        errors.append(np.interp(alike, found["depth_m"], found[illumination]))
+    nearest = np.argmax(list(shares.values()), axis=0)
+    error = np.take_along_axis(np.array(errors), nearest[None], axis=0)[0]
     return np.asarray(error * sqrt(_measured()["walks_per_pixel"] / walks_per_pixel))
 
 

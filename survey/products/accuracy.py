@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.points import PixelRecord, PointClass, PointCloud
+from survey.optics.water import WaterColumn
 from survey.products.cells import CellGrid, inside_ring
 from survey.products.pixels import pixel_metrics
-from survey.products.reach import WaterClarity, optical_depths
+from survey.products.reach import optical_depths
 
 FloatArray = NDArray[np.float64]
 ElevationAt = Callable[[FloatArray, FloatArray], FloatArray]
@@ -29,7 +30,7 @@ def metrics(
     water_level: float,
     survey_area: FloatArray,
     cell_size: float,
-    clarity: WaterClarity,
+    water: WaterColumn,
 ) -> dict[str, Any]:
     """Return what a mission achieved, as plain values for JSON; None where nothing was measured.
 
@@ -68,8 +69,8 @@ def metrics(
     cell_size : float
         Side of the cells of coverage [m]: that of the thinning, and not below the pixels'
         spacing on the bottom, or full coverage is out of reach.
-    clarity : WaterClarity
-        What makes optical depths of depths.
+    water : WaterColumn
+        Makes optical depths of depths.
 
     Raises
     ------
@@ -91,7 +92,7 @@ def metrics(
         "false_bottoms": int((np.abs(elevation_errors(solid)) > FALSE_BOTTOM_ERROR).sum()),
         **_coverage(solid, elevation_at, water_level, survey_area, cell_size),
         **pixels,
-        **optical_depths(pixels, clarity),
+        **optical_depths(pixels, water),
     }
     return {name: _rounded(value) for name, value in values.items()}
 

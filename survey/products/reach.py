@@ -3,67 +3,43 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
-from survey.optics.water import Water
-from survey.optics.water.apparent import lee_diffuse_attenuation
+from survey.optics.water import WaterColumn
+from survey.optics.water.apparent import diffuse_attenuation
 
 DEPTHS = ("found_depth", "half_found_depth", "detection_depth")
 
 
-@dataclass(frozen=True, kw_only=True)
-class WaterClarity:
-    """What turns a depth z into the optical depths c z and K_d z.
+def optical_depths(metrics: Mapping[str, Any], water: WaterColumn) -> dict[str, float | None]:
+    """Return c z and K_d z for each depth of `pixel_metrics`, and c and K_d under the surface.
 
-    Parameters
-    ----------
-    attenuation : float
-        Beam attenuation c [1/m].
-    diffuse_attenuation : float
-        K_d [1/m].
-    """
-
-    attenuation: float
-    diffuse_attenuation: float
-
-    @classmethod
-    def of(cls, water: Water) -> WaterClarity:
-        """Return that of a water, K_d by Lee et al. (2005) under a sun at the zenith.
-
-        Examples
-        --------
-        >>> from survey.optics.water import petzold_water
-        >>> water = petzold_water("coastal", refractive_index=1.33, group_index=1.33)
-        >>> f"{WaterClarity.of(water).diffuse_attenuation:.3f} 1/m"
-        '0.190 1/m'
-        """
-        return cls(
-            attenuation=water.attenuation,
-            diffuse_attenuation=lee_diffuse_attenuation(
-                absorption=water.absorption,
-                backscattering=water.scattering * water.phase_function.backscatter_fraction,
-                sun_zenith=0.0,
-            ),
-        )
-
-
-def optical_depths(metrics: Mapping[str, Any], clarity: WaterClarity) -> dict[str, float | None]:
-    """Return c, K_d and, for each depth of `pixel_metrics`, c z and K_d z; None where it is None.
+    c z and K_d z are integrals over the water's layers, None where the depth is None. K_d is that
+    of `diffuse_attenuation`.
 
     Examples
     --------
+    >>> from survey.optics.water import petzold_water
+    >>> water = WaterColumn.uniform(
+    ...     petzold_water("coastal", refractive_index=1.33, group_index=1.33))
     >>> found = {"found_depth_m": 4.5, "half_found_depth_m": 8.0, "detection_depth_m": None}
-    >>> deep = optical_depths(found, WaterClarity(attenuation=0.4, diffuse_attenuation=0.2))
-    >>> deep["found_depth_c_z"], deep["half_found_depth_k_d_z"], deep["detection_depth_c_z"]
-    (1.8, 1.6, None)
+    >>> deep = optical_depths(found, water)
+    >>> round(deep["found_depth_c_z"], 2), round(deep["half_found_depth_k_d_z"], 2)
+    (1.79, 1.52)
+    >>> deep["detection_depth_c_z"] is None
+    True
     """
-    c, kd = clarity.attenuation, clarity.diffuse_attenuation
-    values: dict[str, float | None] = {"attenuation_per_m": c, "diffuse_attenuation_per_m": kd}
+    values: dict[str, float | None] = {
+        "attenuation_per_m": water.surface.attenuation,
+        "diffuse_attenuation_per_m": diffuse_attenuation(water.surface),
+    }
     for name in DEPTHS:
         depth = metrics[f"{name}_m"]
-        values[f"{name}_c_z"] = None if depth is None else c * depth
-        values[f"{name}_k_d_z"] = None if depth is None else kd * depth
+        known = depth is not None
+        values[f"{name}_c_z"] = float(water.attenuated(depth)) if known else None
+        values[f"{name}_k_d_z"] = (
+            float(water.integral(depth, diffuse_attenuation)) if known else None
+        )
     return values
 
 

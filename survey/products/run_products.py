@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from survey.cloud.points import Outcome, PointClass, PointCloud
 from survey.cloud.stitch import stitched
 from survey.flight.pose import Frame
+from survey.optics.water import WaterColumn
 from survey.products.accuracy import BOTTOM_CLASSES, elevation_errors, metrics
 from survey.products.coverage import coverage_map, surveyed_hull, write_coverage_geojson
 from survey.products.frame_file import FrameResult
@@ -23,7 +24,6 @@ from survey.products.las_file import write_laz
 from survey.products.mesh_files import write_bathymetry_glb
 from survey.products.pixels import explain_empty
 from survey.products.ply_file import write_ply
-from survey.products.reach import WaterClarity
 from survey.products.report import write_report
 from survey.products.substrates import substrate_metrics
 from survey.products.track_files import TrackFormat, write_trajectory_files
@@ -57,8 +57,8 @@ class ProductSettings:
         Formats beside CSV in which the measured trajectory is written.
     deviations : tuple of float
         Standard deviations of the measured pose, see `Navigation.deviations`.
-    clarity : WaterClarity
-        Of the water.
+    water : WaterColumn
+        Makes optical depths of depths.
     """
 
     title: str
@@ -71,7 +71,7 @@ class ProductSettings:
     survey_area: FloatArray | None
     trajectory_files: Sequence[TrackFormat]
     deviations: tuple[float, ...]
-    clarity: WaterClarity
+    water: WaterColumn
 
 
 def write_products(
@@ -119,7 +119,7 @@ def write_products(
         water_level=settings.water_level,
         survey_area=area,
         cell_size=cell,
-        clarity=settings.clarity,
+        water=settings.water,
     )
     found["substrates"] = substrate_metrics(bottom, results, seabed.substrate_names)
     write_json(folder / "metrics.json", found)

@@ -18,6 +18,7 @@ from survey.scenario.sun import (
     water_reflectance,
 )
 from survey.scenario.times import gate_start_ns
+from survey.scenario.water_sections import WaterSection
 
 if TYPE_CHECKING:
     import numpy as np
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from survey.flight.pose import Frame
     from survey.flight.trajectory import Plan
     from survey.optics.background import CoxMunkGlint, Sky
-    from survey.optics.water import Water
+    from survey.optics.water import WaterColumn
     from survey.sensor.camera import Camera
     from survey.sensor.detector import Detector
     from survey.sensor.laser import Laser
@@ -108,13 +109,22 @@ def detector(scenario: Scenario) -> Detector:
     return build_detector(scenario)
 
 
-def water(scenario: Scenario) -> Water:
-    """Return the water."""
-    from survey.scenario.water_parts import build_water
+def water(scenario: Scenario) -> WaterColumn:
+    """Return the water with its layers."""
+    return _column(scenario, scenario.water)
 
-    return build_water(
-        scenario.water, wavelength_nm=scenario.laser.wavelength_nm, folder=scenario.folder
-    )
+
+def expected_water(scenario: Scenario) -> WaterColumn:
+    """Return the water that thresholds are made for: with its layers, or without."""
+    if scenario.processing.expects_layers:
+        return water(scenario)
+    return _column(scenario, scenario.water.model_copy(update={"layers": []}))
+
+
+def _column(scenario: Scenario, given: WaterSection) -> WaterColumn:
+    from survey.scenario.water_column_parts import build_column
+
+    return build_column(given, wavelength_nm=scenario.laser.wavelength_nm, folder=scenario.folder)
 
 
 def sea_surface(scenario: Scenario) -> SeaSurface:
@@ -253,7 +263,7 @@ def ranging_settings(scenario: Scenario) -> RangingSettings:
 
 
 def view_outlines(scenario: Scenario) -> list[FloatArray]:
-    """Return what the frames see of the water, outlines (corners, 2) in the local frame [m].
+    """Return what the frames see of the lowest water: outlines (corners, 2) in the local frame [m].
 
     Raises
     ------
@@ -263,7 +273,8 @@ def view_outlines(scenario: Scenario) -> list[FloatArray]:
     from survey.flight.trajectory import footprints
 
     try:
-        return footprints(camera(scenario), frames(scenario), scenario.surface.water_level_m)
+        lowest = scenario.surface.water_level_m - scenario.surface.tidal_amplitude_m
+        return footprints(camera(scenario), frames(scenario), lowest)
     except ValueError as fault:
         raise _named(scenario, fault) from fault
 

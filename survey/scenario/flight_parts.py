@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.scenario import flight_sections as kinds
+from survey.scenario.file_stamp import stamp_of
 from survey.scenario.sections import Flight
 
 if TYPE_CHECKING:
@@ -156,7 +157,7 @@ def read_track(given: kinds.RecordedFlight, *, epsg: int, folder: Path) -> Track
     kind = track_format(given)
     if kind is None:
         raise ValueError(f"{path}: of no known format. Say it with flight.format")
-    track = _read_track(path, _stamp(path), kind, given.column_prefix, epsg)
+    track = _read_track(path, stamp_of(path), kind, given.column_prefix, epsg)
     offset = (given.offset_easting_m, given.offset_northing_m, given.offset_up_m)
     return track.moved(np.array(offset))
 
@@ -209,7 +210,7 @@ def area_corners(given: kinds.AreaFlight, *, epsg: int, folder: Path) -> FloatAr
         closed = len(corners) > 1 and bool((corners[0] == corners[-1]).all())
         return corners[:-1] if closed else corners
     path = folder / given.file
-    return _read_area(path, _stamp(path), epsg)
+    return _read_area(path, stamp_of(path), epsg)
 
 
 @lru_cache(maxsize=4)
@@ -217,11 +218,6 @@ def _read_area(path: Path, stamp: tuple[int, int], epsg: int) -> FloatArray:
     from survey.flight.files.geojson_file import read_area
 
     return read_area(path, epsg=epsg)
-
-
-def _stamp(path: Path) -> tuple[int, int]:
-    status = path.stat()
-    return status.st_mtime_ns, status.st_size
 
 
 def beginning(plan: Plan) -> tuple[FloatArray, float]:

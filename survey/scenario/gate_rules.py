@@ -38,16 +38,16 @@ def gate_holds_the_water(
     mission: Mission,
     folder: Path,
 ) -> Iterator[Fault]:
-    """The gate opens before the first surface echo and closes after the last one.
+    """The gate opens before the first surface echo and closes after the last one, at any tide.
 
     Swings are taken up to four times their r.m.s., all at once.
     """
     if isinstance(flight, kinds.RecordedFlight):
         track = sound_track(flight, epsg=mission.crs_epsg, folder=folder)
-        reach = None if track is None else _recorded_reach(flight, track, surface.water_level_m)
+        reach = None if track is None else _recorded_reach(flight, track, surface)
     else:
         assert isinstance(flight, kinds.PlannedFlight)
-        reach = _planned_reach(flight, motion, navigation)
+        reach = _planned_reach(flight, motion, navigation, surface)
     if reach is None:
         return
     if reach.low <= 0.0:
@@ -107,8 +107,10 @@ class _Reach:
         return np.asarray(np.cos(self.pitches) * level - np.sin(self.pitches) * forward)
 
 
-def _planned_reach(flight: kinds.PlannedFlight, motion: Motion, navigation: Navigation) -> _Reach:
-    heave = _widest(motion.height)
+def _planned_reach(
+    flight: kinds.PlannedFlight, motion: Motion, navigation: Navigation, surface: Surface
+) -> _Reach:
+    heave = _widest(motion.height) + surface.tidal_amplitude_m
     low, high = flight.heights_m[0] - heave, flight.heights_m[1] + heave
     roll = abs(motion.roll_mean_deg) + _widest(motion.roll) + _boresight(navigation, "roll")
     pitch = abs(motion.pitch_mean_deg) + _widest(motion.pitch) + _boresight(navigation, "pitch")
@@ -131,14 +133,16 @@ def _boresight(navigation: Navigation, axis: str) -> float:
     return abs(float(sum(getattr(navigation, name) for name in names)))
 
 
-def _recorded_reach(flight: kinds.RecordedFlight, track: Track, water_level_m: float) -> _Reach:
+def _recorded_reach(flight: kinds.RecordedFlight, track: Track, surface: Surface) -> _Reach:
     since = track.time - track.time[0]
     flown = np.zeros(since.shape, np.bool_)
     for begin, end in legs(flight, track):
         flown |= (since >= begin) & (since <= end)
     flown |= ~flown.any()
-    roll, pitch = track.roll[flown], track.pitch[flown]
-    heights = track.position[flown, 2] - water_level_m
+    roll, pitch = (np.tile(angle[flown], 2) for angle in (track.roll, track.pitch))
+    heights = track.position[flown, 2] - surface.water_level_m
+    tide = surface.tidal_amplitude_m
+    heights = np.concatenate([heights - tide, heights + tide])
     widest = [np.degrees(np.abs(angle).max()) for angle in (roll, pitch)]
     words = (
         f" (heights {heights.min():.0f} to {heights.max():.0f} m, roll up to {widest[0]:.1f}, "

@@ -24,7 +24,7 @@ from survey.scenario.surface_sections import Surface
 from survey.scenario.times import gate_start_ns
 from survey.scenario.toml_text import to_toml
 from survey.scenario.validate import validate
-from survey.scenario.water_sections import PetzoldWater
+from survey.scenario.water_sections import PetzoldWater, WaterSection
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,7 +54,7 @@ class Scenario:
     camera: sections.Camera
     receiver: sections.Receiver
     detector: sections.Detector
-    water: sections.Water
+    water: WaterSection
     surface: Surface
     seabed: SeabedSection
     sun: sections.Sun
@@ -122,12 +122,9 @@ class Scenario:
 
     def _resolve(self, tables: dict[str, Any]) -> None:
         """Fill in the defaults that follow from other sections."""
-        if isinstance(self.water, PetzoldWater):
-            from survey.optics.water import PAPER_COEFFICIENTS
-
-            absorption, scattering = PAPER_COEFFICIENTS[self.water.type]
-            _default(tables["water"], "absorption_per_m", absorption)
-            _default(tables["water"], "scattering_per_m", scattering)
+        _resolve_water(self.water, tables["water"])
+        for layer, table in zip(self.water.layers, tables["water"]["layers"], strict=True):
+            _resolve_water(layer, table)
         _default(tables["receiver"], "gate_start_ns", gate_start_ns(self.receiver, self.flight))
         _default(tables["processing"], "echo_gate_ns", self.laser.pulse_width_ns)
         self._resolve_sun(tables["sun"])
@@ -141,6 +138,16 @@ class Scenario:
             _default(table, "water_reflectance", water_reflectance(self.sun, self.water))
         if self.sun.model == "layered":
             _default(table, "air_extinction_per_m", air_extinction_per_m(self.sun, self.flight))
+
+
+def _resolve_water(water: sections.Section, table: dict[str, Any]) -> None:
+    """Fill in the coefficients of a measured water."""
+    if isinstance(water, PetzoldWater):
+        from survey.optics.water import PAPER_COEFFICIENTS
+
+        absorption, scattering = PAPER_COEFFICIENTS[water.type]
+        _default(table, "absorption_per_m", absorption)
+        _default(table, "scattering_per_m", scattering)
 
 
 def _tables_with_a_file(value: Any) -> Iterator[dict[str, Any]]:

@@ -97,14 +97,6 @@ class Detector(Section):
     burst_rate_hz: Positive = 1.0e5
 
 
-class Water(Section):
-    """What every water has; `survey.scenario.water_sections` holds the ways to state one."""
-
-    type: str
-    refractive_index: Annotated[float, Field(ge=1.0, le=2.0)] = 1.3415
-    group_index: Annotated[float, Field(ge=1.0, le=2.0)] = 1.36
-
-
 class Sun(Section):
     """Background light: by the sun's place and the air, or a stated radiance instead.
 
@@ -139,12 +131,16 @@ class Transport(Section):
 class Processing(Section):
     """From counts to points and grids; without `echo_gate_ns` an echo is one pulse width long.
 
-    `keep_waveforms` keeps the detector's histograms and time tags in the frames' files: of one
-    pixel in 8 x 8, or of all.
+    `water_level_error_m` is how far the level that is expected, before the first echoes tell it,
+    lies above the true one. Thresholds are made for the water with its layers, unless
+    `expects_layers` is false: then for that of [water] alone. `keep_waveforms` keeps the detector's
+    histograms and time tags in the frames' files: of one pixel in 8 x 8, or of all.
     """
 
     false_alarm_rate: Annotated[float, Field(gt=0.0, lt=1.0)] = 1e-3
     echo_gate_ns: Positive | None = None
+    expects_layers: bool = True
+    water_level_error_m: Annotated[float, Field(ge=-10.0, le=10.0)] = 0.0
     thinning_m: NotNegative = 1.0
     grid_m: Positive = 2.0
     keep_waveforms: Literal["none", "sampled", "all"] = "none"

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from survey.scenario.faults import Fault
-from survey.scenario.sections import Flight, Laser, Receiver, Sun, Water
+from survey.scenario.sections import Flight, Laser, Receiver, Sun
 from survey.scenario.surface_sections import Surface
+from survey.scenario.water_sections import PetzoldWater, WaterSection, topmost
 
 PAPER_IRRADIANCE_W_M2_NM = 1.95  # E_perp at 0.53 um, [Lisenko2017]
 PAPER_WATER_REFLECTANCE = 0.0097  # rho_s, the lower end of [Lisenko2017]
@@ -20,10 +21,12 @@ ROUNDING = 1e-9
 LEAST_LEGENDRE_MOMENT = -2.0  # below it (5) can give less light than the sun's beam alone
 
 
-def water_reflectance(sun: Sun, water: Water) -> float:
-    """Return rho_s: by the type of water, as stated, or the paper's lower end [1]."""
+def water_reflectance(sun: Sun, water: WaterSection) -> float:
+    """Return rho_s: by the type of the topmost water, as stated, or the paper's lower end [1]."""
     if sun.water_light == "by_water_type":
-        return REFLECTANCE_OF_WATER[water.type]
+        top = topmost(water)
+        assert isinstance(top, PetzoldWater)
+        return REFLECTANCE_OF_WATER[top.type]
     return PAPER_WATER_REFLECTANCE if sun.water_reflectance is None else sun.water_reflectance
 
 

@@ -12,9 +12,11 @@ from survey.scenario.surface_sections import Surface, Waves
 
 if TYPE_CHECKING:
     from terrain.sea_surface import SeaSurface
+    from terrain.tide import Tide
     from terrain.waves import WaveField, WindSea
 
 KILO = 1e3
+HOUR = 3600.0
 WAVES = 8  # purpose of random numbers, beside those of `survey.transport.random`
 
 
@@ -29,6 +31,19 @@ def build_sea(given: Surface, *, seed: int) -> SeaSurface:
         wind_from=radians(given.wind_from_deg),
         waves=_waves(given, seed) if given.waves or given.swell else None,
         whitecap_coverage=whitecap_coverage(given.wind_speed_m_s) if given.whitecaps else 0.0,
+        tide=_tide(given),
+    )
+
+
+def _tide(given: Surface) -> Tide | None:
+    from terrain.tide import Tide
+
+    if given.tide is None:
+        return None
+    return Tide(
+        amplitude=given.tide.amplitude_m,
+        period=given.tide.period_h * HOUR,
+        high_water=given.tide.high_water_h * HOUR,
     )
 
 

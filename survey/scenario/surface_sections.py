@@ -30,16 +30,31 @@ class Swell(Section):
     from_deg: Bearing
 
 
+class Tide(Section):
+    """One constituent, M2 unless told; `high_water_h` counts from the mission's start."""
+
+    amplitude_m: Annotated[float, Field(gt=0.0, le=10.0)]
+    period_h: Annotated[float, Field(ge=1.0, le=1000.0)] = 12.4206
+    high_water_h: float = 0.0
+
+
 class Surface(Section):
     """The water level in the vertical datum, the wind, and the waves; without them it is level.
 
+    The level is the mean one where there is a tide.
     `wave_depth_m` is the depth that waves feel; without one they run as over deep water.
     """
 
     water_level_m: float
+    tide: Tide | None = None
     wind_speed_m_s: Annotated[float, Field(ge=0.0, le=20.0)] = 5.0
     wind_from_deg: Bearing = 0.0
     whitecaps: bool = False
     wave_depth_m: Positive | None = None
     waves: Waves | None = None
     swell: list[Swell] = Field(default_factory=list)
+
+    @property
+    def tidal_amplitude_m(self) -> float:
+        """How far the water rises and falls about its mean level."""
+        return 0.0 if self.tide is None else self.tide.amplitude_m

@@ -1,4 +1,4 @@
-"""The section [water] turned into a water, in SI units and radians.
+"""What states a water turned into that water, in SI units and radians.
 
 `survey.optics` is imported when a water is built, so that checking a scenario stays quick.
 """
@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from survey.scenario import water_sections as kinds
-from survey.scenario.sections import Water as WaterSection
+from survey.scenario.phase_parts import build_phase_function
+from survey.scenario.sections import Section
 
 if TYPE_CHECKING:
     from survey.optics.phase import PhaseFunction
@@ -23,13 +24,22 @@ MG_M3 = 1e-6
 ZERO_CELSIUS = 273.15
 
 
-def build_water(given: WaterSection, *, wavelength_nm: float, folder: Path) -> Water:
-    """Return the water that a section states.
+def build_water(
+    given: Section,
+    *,
+    refractive_index: float,
+    group_index: float,
+    wavelength_nm: float,
+    folder: Path,
+) -> Water:
+    """Return the uniform water that a section or a layer states.
 
     Parameters
     ----------
-    given : Water
-        One of the sections of `survey.scenario.water_sections`.
+    given : Section
+        One of the waters of `survey.scenario.water_sections`.
+    refractive_index, group_index : float
+        Phase and group index [1].
     wavelength_nm : float
         Of the laser [nm].
     folder : Path
@@ -40,7 +50,7 @@ def build_water(given: WaterSection, *, wavelength_nm: float, folder: Path) -> W
     ValueError
         When a table cannot be used or no water is like that.
     """
-    indices = {"refractive_index": given.refractive_index, "group_index": given.group_index}
+    indices = {"refractive_index": refractive_index, "group_index": group_index}
     if isinstance(given, kinds.PetzoldWater):
         from survey.optics.water import petzold_water
 
@@ -64,7 +74,7 @@ def build_water(given: WaterSection, *, wavelength_nm: float, folder: Path) -> W
     return build_mixture(given, wavelength_nm=wavelength_nm, folder=folder).water(**indices)
 
 
-def build_mixture(given: WaterSection, *, wavelength_nm: float, folder: Path) -> Mixture:
+def build_mixture(given: Section, *, wavelength_nm: float, folder: Path) -> Mixture:
     """Return the components of a water that is stated by them or by a surveyor's figure.
 
     Raises
@@ -194,53 +204,3 @@ def _chlorophyll(
     return surveyor.chlorophyll_of_turbidity(
         given.turbidity_ntu, waters=waters, estimate=given.estimate
     )
-
-
-def build_phase_function(given: kinds.PhaseFunctionSection, *, folder: Path) -> PhaseFunction:
-    """Return the phase function that a table states.
-
-    Raises
-    ------
-    ValueError
-        When its file cannot be used or its numbers make no phase function.
-    """
-    from survey.optics import phase
-
-    match given:
-        case kinds.PetzoldPhase():
-            return phase.petzold(given.type)
-        case kinds.AverageParticlePhase():
-            return phase.average_particle(given.edition)
-        case kinds.FournierForandPhase():
-            return _fournier_forand(given)
-        case kinds.HenyeyGreensteinPhase():
-            return phase.henyey_greenstein(given.asymmetry)
-        case kinds.TwoTermPhase():
-            return phase.two_term_henyey_greenstein(
-                forward_share=given.forward_share,
-                forward_asymmetry=given.forward_asymmetry,
-                backward_asymmetry=given.backward_asymmetry,
-            )
-        case kinds.MolecularPhase():
-            return phase.molecular(given.depolarisation)
-        case kinds.TablePhase():
-            return phase.read_phase_function(
-                folder / given.file, small_angle_slope=given.small_angle_slope
-            )
-    assert isinstance(given, kinds.MixturePhase)
-    return phase.mixture(
-        [
-            (build_phase_function(part.phase_function, folder=folder), part.scattering_fraction)
-            for part in given.components
-        ]
-    )
-
-
-def _fournier_forand(given: kinds.FournierForandPhase) -> PhaseFunction:
-    from survey.optics import phase
-
-    if given.backscatter_fraction is not None:
-        return phase.fournier_forand_of_backscatter(given.backscatter_fraction)
-    assert given.particle_index is not None
-    assert given.size_slope is not None
-    return phase.fournier_forand(particle_index=given.particle_index, size_slope=given.size_slope)

@@ -1,4 +1,4 @@
-"""The section [water]: the ways to state a water, and the phase functions it may have."""
+"""The section [water]: the ways to state a water, in layers or as a profile."""
 
 from __future__ import annotations
 
@@ -7,113 +7,21 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
-from survey.scenario.sections import Positive, Section, Text, Water
+from survey.scenario.phase_sections import AVERAGE_PARTICLE, AnyPhase, PetzoldType
+from survey.scenario.sections import NotNegative, Positive, Section, Text
 
-Asymmetry = Annotated[float, Field(ge=-0.98, le=0.99999)]
-Share = Annotated[float, Field(ge=0.0, le=1.0)]
 Coefficient = Annotated[float, Field(ge=0.0, le=1000.0)]
 PositiveCoefficient = Annotated[float, Field(gt=0.0, le=1000.0)]
 Chlorophyll = Annotated[float, Field(ge=0.0, le=1000.0)]
-PetzoldType = Literal["clear", "coastal", "harbor"]
 Salinity = Annotated[float, Field(ge=0.0, le=45.0)]
 Temperature = Annotated[float, Field(ge=-2.0, le=40.0)]
+RefractiveIndex = Annotated[float, Field(ge=1.0, le=2.0)]
 
 
-class PhaseFunctionSection(Section):
-    """What every phase function has."""
+class Water(Section):
+    """What every way to state a water has, be it in [water] or in a layer."""
 
-    kind: str
-
-
-class PetzoldPhase(PhaseFunctionSection):
-    """Petzold's measured function of a water; by default that of the water's own type."""
-
-    kind: Literal["petzold"]
-    type: PetzoldType
-
-
-class AverageParticlePhase(PhaseFunctionSection):
-    """Mobley's average of Petzold's particles."""
-
-    kind: Literal["average_particle"]
-    edition: Literal["web book", "mobley 1993"] = "web book"
-
-
-class FournierForandPhase(PhaseFunctionSection):
-    """Particles by index and slope of their sizes, or by their backscatter fraction alone."""
-
-    kind: Literal["fournier_forand"]
-    particle_index: Annotated[float, Field(ge=1.001, le=1.35)] | None = None
-    size_slope: Annotated[float, Field(ge=3.01, le=4.99)] | None = None
-    backscatter_fraction: Annotated[float, Field(gt=0.0, lt=0.5)] | None = None
-
-
-class HenyeyGreensteinPhase(PhaseFunctionSection):
-    """One parameter; for benchmarks."""
-
-    kind: Literal["henyey_greenstein"]
-    asymmetry: Asymmetry
-
-
-class TwoTermPhase(PhaseFunctionSection):
-    """Two functions of Henyey and Greenstein; for benchmarks."""
-
-    kind: Literal["two_term"]
-    forward_share: Share
-    forward_asymmetry: Asymmetry
-    backward_asymmetry: Asymmetry
-
-
-class MolecularPhase(PhaseFunctionSection):
-    """Water itself."""
-
-    kind: Literal["molecular"]
-    depolarisation: Share = 0.039
-
-
-class TablePhase(PhaseFunctionSection):
-    """A CSV file with the header ``angle_deg,value``."""
-
-    kind: Literal["table"]
-    file: Text
-    small_angle_slope: Annotated[float, Field(gt=-2.0)] | None = None
-
-
-def _short_form(given: Any) -> Any:
-    """A word alone stands for the kind."""
-    return {"kind": given} if isinstance(given, str) else given
-
-
-PlainKinds = (
-    PetzoldPhase
-    | AverageParticlePhase
-    | FournierForandPhase
-    | HenyeyGreensteinPhase
-    | TwoTermPhase
-    | MolecularPhase
-    | TablePhase
-)
-PlainPhase = Annotated[PlainKinds, Field(discriminator="kind"), BeforeValidator(_short_form)]
-
-
-class PhaseShare(Section):
-    """One of the phase functions of a mixture, with its share of all scattering."""
-
-    scattering_fraction: Annotated[float, Field(gt=0.0, le=1.0)]
-    phase_function: PlainPhase
-
-
-class MixturePhase(PhaseFunctionSection):
-    """Components that scatter side by side; their shares add up to 1."""
-
-    kind: Literal["mixture"]
-    components: list[PhaseShare] = Field(min_length=1)
-
-
-AnyPhase = Annotated[
-    PlainKinds | MixturePhase, Field(discriminator="kind"), BeforeValidator(_short_form)
-]
-AVERAGE_PARTICLE = AverageParticlePhase(kind="average_particle")
+    type: str
 
 
 class PetzoldWater(Water):
@@ -175,6 +83,29 @@ class SurveyedWater(MolecularPart):
     measured_sun_zenith_deg: Annotated[float, Field(ge=0.0, le=75.0)] = 30.0
 
 
+class Depths(Section):
+    """Where a layer lies under mean level; without an end it goes down to the bottom."""
+
+    from_depth_m: NotNegative
+    to_depth_m: Positive | None = None
+
+
+class PetzoldLayer(Depths, PetzoldWater):
+    """A layer of a measured water."""
+
+
+class StatedLayer(Depths, StatedWater):
+    """A layer by its coefficients."""
+
+
+class ComponentsLayer(Depths, ComponentsWater):
+    """A layer by what is in it."""
+
+
+class SurveyedLayer(Depths, SurveyedWater):
+    """A layer by a surveyor's figure."""
+
+
 FIGURES = ("secchi_depth_m", "kd_490_per_m", "turbidity_ntu")
 CONSTITUENTS = (
     "chlorophyll_mg_m3",
@@ -184,9 +115,15 @@ CONSTITUENTS = (
 COEFFICIENTS = ("absorption_per_m", "scattering_per_m")
 WAYS_TO_STATE_A_WATER = (
     "Say clear, coastal or harbor, or give secchi_depth_m, kd_490_per_m or turbidity_ntu, "
-    "or chlorophyll_mg_m3, or absorption_per_m and scattering_per_m."
+    "or chlorophyll_mg_m3, or absorption_per_m and scattering_per_m, "
+    "or the profile of a cast."
 )
-TELLING_KEYS = {"surveyed": FIGURES, "components": CONSTITUENTS, "stated": COEFFICIENTS}
+TELLING_KEYS = {
+    "profiled": ("profile",),
+    "surveyed": FIGURES,
+    "components": CONSTITUENTS,
+    "stated": COEFFICIENTS,
+}
 
 
 def _with_type(given: Any) -> Any:
@@ -198,8 +135,67 @@ def _with_type(given: Any) -> Any:
     return given
 
 
-AnyWater = Annotated[
-    PetzoldWater | StatedWater | ComponentsWater | SurveyedWater,
+AnyLayer = Annotated[
+    PetzoldLayer | StatedLayer | ComponentsLayer | SurveyedLayer,
     Field(discriminator="type"),
     BeforeValidator(_with_type),
 ]
+
+
+class WaterSection(Section):
+    """What every section [water] has: how light runs in it, and layers of other water."""
+
+    type: str
+    refractive_index: RefractiveIndex = 1.3415
+    group_index: RefractiveIndex = 1.36
+    layers: list[AnyLayer] = Field(default_factory=list)
+
+
+class PetzoldSection(PetzoldWater, WaterSection):
+    """A measured water around the layers."""
+
+
+class StatedSection(StatedWater, WaterSection):
+    """Water by its coefficients around the layers."""
+
+
+class ComponentsSection(ComponentsWater, WaterSection):
+    """Water by what is in it around the layers."""
+
+
+class SurveyedSection(SurveyedWater, WaterSection):
+    """Water by a surveyor's figure around the layers."""
+
+
+class Profile(Section):
+    """A CSV file with columns ``depth_m``, ``absorption_per_m``, ``scattering_per_m``.
+
+    And perhaps ``backscatter_fraction``, by which each depth has its own phase function.
+    """
+
+    file: Text
+
+
+def _file_alone(given: Any) -> Any:
+    """A text alone stands for the file."""
+    return {"file": given} if isinstance(given, str) else given
+
+
+class ProfiledSection(WaterSection):
+    """Water measured from depth to depth; the phase function is for files that say none."""
+
+    type: Literal["profiled"]
+    profile: Annotated[Profile, BeforeValidator(_file_alone)]
+    phase_function: AnyPhase = AVERAGE_PARTICLE
+
+
+AnyWater = Annotated[
+    PetzoldSection | StatedSection | ComponentsSection | SurveyedSection | ProfiledSection,
+    Field(discriminator="type"),
+    BeforeValidator(_with_type),
+]
+
+
+def topmost(water: WaterSection) -> Section:
+    """Return what states the water right under the surface: a layer there, or the section."""
+    return next((layer for layer in water.layers if layer.from_depth_m == 0.0), water)

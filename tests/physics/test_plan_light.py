@@ -21,6 +21,14 @@ from survey.transport.response import response
 COARSE = {"rows": 8, "columns": 16, "pixel_footprint_m": 8.0}
 """The paper's field of view in 128 pixels: as much light in all, in little time."""
 
+PLUME = {"type": "harbor", "from_depth_m": 0.0, "to_depth_m": 1.5}
+SEDIMENT = {
+    "from_depth_m": 6.5,
+    "absorption_per_m": 0.3,
+    "scattering_per_m": 3.0,
+    "phase_function": {"kind": "fournier_forand", "backscatter_fraction": 0.02},
+}
+
 
 def scenario(water: str, seabed: dict[str, Any], **changes: Any) -> Scenario:
     tables: dict[str, Any] = {
@@ -64,6 +72,31 @@ def test_expected_light_is_that_of_the_engine(water: str, depth: float) -> None:
     foretold = foretold[_inner(foretold.shape)].sum(axis=-1)
     assert traced.std(ddof=1) / traced.size**0.5 < 0.01 * traced.mean()
     assert foretold.mean() / traced.mean() == pytest.approx(1.0, abs=0.03)
+
+
+@pytest.mark.parametrize(
+    ("water", "depth"),
+    [
+        ({"type": "clear", "layers": [PLUME]}, 6.0),
+        ({"type": "coastal", "layers": [SEDIMENT]}, 8.0),
+    ],
+)
+def test_light_through_layers_is_estimated_from_their_k_d(
+    water: dict[str, Any], depth: float
+) -> None:
+    """To the quarter that `water_response` states; uniform water without the layer is far off."""
+    flat = scenario("clear", {"kind": "plane", "depth_m": depth})
+    flown = flat.replace(**{"water": water, "transport.walks_per_pixel": 64})
+    mission, light = prepare(flown), expected_light(flown, height=200.0)
+    flash = mission.engine.flash(pose=mission.frames[0].pose, frame=0)
+    traced = flash.origin("bottom")[_inner(flash.origin("bottom").shape)].sum(axis=-1)
+    bare = expected_light(flown.replace(**{"water.layers": []}), height=200.0)
+    made = [each.bottom(depth=depth, reflectance=0.1) for each in (light, bare)]
+    foretold, without = (each[_inner(each.shape)].sum(axis=-1).mean() for each in made)
+    assert traced.std(ddof=1) / traced.size**0.5 < 0.02 * traced.mean()
+    assert light.water.is_estimate
+    assert foretold / traced.mean() == pytest.approx(1.0, abs=0.25)
+    assert without / traced.mean() > 1.5
 
 
 def _inner(shape: tuple[int, ...]) -> tuple[slice, slice]:

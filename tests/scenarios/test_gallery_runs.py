@@ -182,3 +182,21 @@ def test_harbor_wreck_shows_sand_and_objects_and_loses_the_seagrass() -> None:
 def test_too_deep_shows_nothing() -> None:
     _, clouds = flown("too-deep", slice(0, 4))
     assert share(PointCloud.concatenate(clouds), *BOTTOM) < 3e-3
+
+
+@pytest.mark.parametrize("known", [False, True])
+def test_turbid_layer_is_a_false_floor_or_a_hole_over_the_troughs(known: bool) -> None:
+    part = {"camera.rows": 8, "camera.columns": 32, "laser.pulse_energy_j": 1.0 / 8.0}
+    _, clouds = flown("turbid-layer", slice(0, 2), **part, **{"processing.expects_layers": known})
+    cloud = stitched(clouds, cell_size=0.5)
+    found = np.isin(cloud.classification, BOTTOM)
+    crest, trough = cloud.truth[:, 2] > -8.4, cloud.truth[:, 2] < -10.0
+    assert min(crest.sum(), trough.sum()) > 60
+    assert found[crest].mean() > 0.97
+    assert np.abs(np.median(bottom_errors(cloud.select(crest)))) < 0.1
+    if known:
+        assert found[trough].mean() < 0.02
+    else:
+        floor = cloud.position[trough & found, 2]
+        assert found[trough].mean() > 0.9
+        assert np.median(floor) == pytest.approx(-9.0, abs=0.2)

@@ -17,7 +17,7 @@ from survey.cloud.points import Outcome, PixelRecord, PointClass, PointCloud
 from survey.cloud.ranging import Echo
 from survey.cloud.truth import TrueTargets, true_targets
 from survey.flight.pose import Frame, Pose
-from survey.optics.water import Water, petzold_water
+from survey.optics.water import WaterColumn, petzold_water
 from survey.sensor.camera import Camera
 from terrain.generators import Ground, slope
 from terrain.map_frame import MapFrame
@@ -167,7 +167,7 @@ class Look:
     frame: Frame
     seabed: Seabed
     surface: SeaSurface
-    water: Water
+    water: WaterColumn
     rays: FloatArray
     targets: TrueTargets
 
@@ -220,7 +220,7 @@ def make_look(
     )
     bed = slope(ground=ground, depth=depth, gradient=gradient) if seabed is None else seabed
     surface = SeaSurface.from_wind(level=level, wind_speed=5.0, wind_from=0.0)
-    water = petzold_water("coastal", refractive_index=1.3415, group_index=1.36)
+    water = WaterColumn.uniform(petzold_water("coastal", refractive_index=1.3415, group_index=1.36))
     rays = pixel_rays(camera=camera, pose=pose)
     return Look(
         frame=Frame(index=7, line=2, time=63.0, pose=pose),

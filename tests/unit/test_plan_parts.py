@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from survey.flight.pose import Frame, Pose
-from survey.optics.water import Water, petzold_water
+from survey.optics.water import WaterColumn, petzold_water
 from survey.planning import water_response as responses
 from survey.planning.gaps import Swath, swath
 from survey.planning.make_response_tables import tables
@@ -168,8 +168,10 @@ def test_small_rests_are_no_gaps() -> None:
     assert found.gaps == []
 
 
-def stated(**changes: float) -> Water:
-    return petzold_water("coastal", refractive_index=1.33, group_index=1.33, **changes)
+def stated(**changes: float) -> WaterColumn:
+    return WaterColumn.uniform(
+        petzold_water("coastal", refractive_index=1.33, group_index=1.33, **changes)
+    )
 
 
 @pytest.mark.parametrize("name", ["clear", "coastal", "harbor"])

@@ -10,10 +10,17 @@ import numpy as np
 import pytest
 
 from survey.cloud.points import Outcome, PointClass
+from survey.optics.water import WaterColumn, petzold_water
+from survey.optics.water.apparent import diffuse_attenuation
 from survey.products.accuracy import metrics
 from survey.products.coverage import surveyed_hull
 from survey.products.pixels import explain_empty, pixel_metrics
-from survey.products.reach import WaterClarity, reach_sentence
+from survey.products.reach import reach_sentence
+
+CLEAR, HARBOR = (
+    petzold_water(kind, refractive_index=1.34, group_index=1.36) for kind in ("clear", "harbor")
+)
+WATER = WaterColumn.uniform(CLEAR).with_layer(HARBOR, top=7.0, bottom=7.5)
 
 
 def judged(survey: Any, *, cell_size: float = 8.0) -> dict[str, Any]:
@@ -26,7 +33,7 @@ def judged(survey: Any, *, cell_size: float = 8.0) -> dict[str, Any]:
         water_level=survey.water_level,
         survey_area=surveyed_hull(survey.records),
         cell_size=cell_size,
-        clarity=WaterClarity(attenuation=0.4, diffuse_attenuation=0.2),
+        water=WATER,
     )
 
 
@@ -144,9 +151,10 @@ def test_how_deep_the_bottom_was_found(small_survey: Any) -> None:
     values = judged(replace(small_survey, records=records))
     assert values["found_depth_m"] == values["detection_depth_m"] == 7.0
     assert values["half_found_depth_m"] == 8.0
-    assert values["found_depth_c_z"] == values["detection_depth_c_z"] == 2.8
-    assert values["half_found_depth_k_d_z"] == 1.6
-    assert "found the bottom down to 7.0 m (c z 2.8, K_d z 1.4)" in reach_sentence(values)
+    assert values["found_depth_c_z"] == values["detection_depth_c_z"] == 7.0 * 0.151
+    layered = 7.5 * diffuse_attenuation(CLEAR) + 0.5 * diffuse_attenuation(HARBOR)
+    assert values["half_found_depth_k_d_z"] == pytest.approx(layered, abs=1e-6)
+    assert "found the bottom down to 7.0 m (c z 1.1, K_d z 0.8)" in reach_sentence(values)
 
 
 def test_no_depth_where_nothing_was_found(small_survey: Any) -> None:
@@ -156,7 +164,8 @@ def test_no_depth_where_nothing_was_found(small_survey: Any) -> None:
     ]
     values = judged(replace(small_survey, records=records))
     assert values["found_depth_m"] is values["half_found_depth_c_z"] is None
-    assert values["detection_depth_k_d_z"] == 1.4
+    clear = 7.0 * diffuse_attenuation(CLEAR)
+    assert values["detection_depth_k_d_z"] == pytest.approx(clear, abs=1e-6)
     assert "found the bottom at no depth and one in two at no depth" in reach_sentence(values)
 
 

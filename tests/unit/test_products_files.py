@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 from survey.flight.pose import Pose
+from survey.optics.water import WaterColumn, petzold_water
 from survey.products.accuracy import elevation_errors, metrics
 from survey.products.coverage import coverage_map, surveyed_hull
 from survey.products.gps_time import adjusted_gps_time
 from survey.products.grids import grid_elevation
 from survey.products.json_file import write_json
-from survey.products.reach import WaterClarity
 from survey.products.report import write_report
 from survey.products.trajectory_file import read_trajectory_csv, write_trajectory_csv
 from survey.products.writing import ProductError, whole_file
@@ -135,7 +135,9 @@ def write_report_of(survey: Any, path: Path) -> str:
             water_level=survey.water_level,
             survey_area=hull,
             cell_size=8.0,
-            clarity=WaterClarity(attenuation=0.4, diffuse_attenuation=0.2),
+            water=WaterColumn.uniform(
+                petzold_water("coastal", refractive_index=1.34, group_index=1.36)
+            ),
         ),
         grid=grid_elevation(survey.bottom, survey.map_frame, cell_size=8.0),
         coverage=coverage_map(
@@ -157,4 +159,4 @@ def test_report_is_self_contained_and_repeatable(small_survey: Any, tmp_path: Pa
     assert "Bar <b>" in parsed.words
     assert "Flown & stitched." in parsed.words
     assert "too weak" in parsed.words
-    assert "nine in ten should down to 7.0 m (c z 2.8, K_d z 1.4)" in parsed.words
+    assert "nine in ten should down to 7.0 m (c z 2.8, K_d z 1.3)" in parsed.words

@@ -50,8 +50,8 @@ def test_detector(scenario: Scenario) -> None:
 
 
 def test_water_keeps_the_paper_unless_told_otherwise(scenario: Scenario) -> None:
-    assert components.water(scenario).absorption == 0.179
-    changed = components.water(scenario.replace(**{"water.absorption_per_m": 0}))
+    assert components.water(scenario).surface.absorption == 0.179
+    changed = components.water(scenario.replace(**{"water.absorption_per_m": 0})).surface
     assert (changed.absorption, changed.scattering) == (0.0, 0.219)
 
 

@@ -34,7 +34,7 @@ def faults_of(tables: dict[str, Any], **changes: Any) -> tuple[str, ...]:
             "water.type",
             "harbour",
             "water.type: 'harbour' is not one of clear, coastal, harbor, stated, components, "
-            "surveyed. Did you mean 'harbor'?",
+            "surveyed, profiled. Did you mean 'harbor'?",
         ),
         (
             "seabed.kind",

@@ -45,7 +45,7 @@ def test_every_scenario_is_sound_and_says_what_to_expect(name: str) -> None:
 
 def test_the_gallery_is_complete() -> None:
     names = {"measured-seabed", "sandbar", "wreck", "turned-footprint", "too-deep"}
-    names |= {"rolling-aircraft", "area-survey", "harbor-wreck", "reef-with-swell"}
+    names |= {"rolling-aircraft", "area-survey", "harbor-wreck", "reef-with-swell", "turbid-layer"}
     assert names | PAPER.keys() <= gallery().keys()
 
 
@@ -153,12 +153,24 @@ def test_harbor_wreck_s_line_sees_all_that_its_basin_is_made_of() -> None:
     assert tops == pytest.approx([-4.0 + cube.side_m for cube in cubes], abs=0.3)
 
 
+def test_turbid_layer_has_its_troughs_in_the_layer_and_its_crests_above_it() -> None:
+    scenario = load_scenario("turbid-layer")
+    corners = np.concatenate(outlines_on_map(scenario)) - components.map_frame(scenario).origin[:2]
+    east, north = np.meshgrid(*np.linspace(corners.min(axis=0), corners.max(axis=0), 100).T)
+    bed = components.seabed(scenario).elevation_at(east.ravel(), north.ravel())
+    assert (bed.min(), bed.max()) == pytest.approx((-10.25, -7.75), abs=0.05)
+    _, layer = components.water(scenario).layers
+    assert layer.top == 8.5
+    assert 0.6 < (bed < -layer.top).mean() < 0.7
+    assert components.expected_water(scenario).is_uniform
+
+
 @pytest.mark.parametrize(("name", "water"), PAPER.items())
 def test_the_paper_s_mission_by_day_and_night_down_a_slope_and_flat(name: str, water: str) -> None:
     by_day = load_scenario(name)
     assert "impossible as hardware" in by_day.mission.description
     assert components.camera(by_day).half_tangents == (0.256, 0.128)
-    medium = components.water(by_day)
+    medium = components.water(by_day).surface
     assert (medium.absorption, medium.scattering) == PAPER_COEFFICIENTS[water]
     assert components.background_radiance(by_day) == pytest.approx(51.8e6, rel=1e-3)
     by_night = by_day.replace(**parse_overrides(["sun.day=false"]))

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from survey.cli import app
 from survey.errors import OtherRunError
 from survey.optics.phase import average_particle, molecular, petzold
-from survey.optics.water import petzold_water
+from survey.optics.water import Water, petzold_water
 from survey.run_folder import RunFolder
 from survey.scenario import components
 from survey.scenario.faults import ScenarioError
@@ -55,6 +55,13 @@ WAYS: dict[str, dict[str, Any]] = {
 }
 
 
+def uniform(scenario: Scenario) -> Water:
+    """Return the water of a scenario without layers."""
+    column = components.water(scenario)
+    assert column.is_uniform
+    return column.surface
+
+
 @pytest.fixture
 def scenario(tables: dict[str, Any], tmp_path: Path) -> Any:
     """Return a function that makes the scenario with a given section [water]."""
@@ -78,7 +85,7 @@ def test_resolved_text_reads_back_as_the_same_water(
     path.write_text(first.to_toml(beside=path.parent), encoding="utf-8")
     again = load_scenario(path)
     assert again.to_toml(beside=path.parent) == path.read_text(encoding="utf-8")
-    made, remade = components.water(first), components.water(again)
+    made, remade = uniform(first), uniform(again)
     assert (made.absorption, made.scattering) == (remade.absorption, remade.scattering)
     density = made.phase_function.density_on_grid
     assert np.array_equal(density, remade.phase_function.density_on_grid)
@@ -87,7 +94,7 @@ def test_resolved_text_reads_back_as_the_same_water(
 
 
 def test_petzolds_waters_are_as_before(scenario: Any) -> None:
-    made = components.water(scenario({"type": "coastal", "scattering_per_m": 0.5}))
+    made = uniform(scenario({"type": "coastal", "scattering_per_m": 0.5}))
     expected = petzold_water("coastal", scattering=0.5, refractive_index=1.3415, group_index=1.36)
     assert (made.absorption, made.scattering) == (expected.absorption, expected.scattering)
     density = made.phase_function.density_on_grid
@@ -123,7 +130,7 @@ def test_petzolds_waters_are_as_before(scenario: Any) -> None:
 def test_phase_functions_by_their_words(
     scenario: Any, phase: Any, name: str, backscatter: float | None
 ) -> None:
-    found = components.water(scenario(OWN | {"phase_function": phase})).phase_function
+    found = uniform(scenario(OWN | {"phase_function": phase})).phase_function
     assert found.name.startswith(name)
     if backscatter is not None:
         assert found.backscatter_fraction == pytest.approx(backscatter, rel=5e-3)
@@ -134,19 +141,17 @@ def test_a_mixture_is_weighted_by_its_fractions(scenario: Any) -> None:
         {"scattering_fraction": 0.25, "phase_function": "molecular"},
         {"scattering_fraction": 0.75, "phase_function": {"kind": "petzold", "type": "clear"}},
     ]
-    made = components.water(
-        scenario(OWN | {"phase_function": {"kind": "mixture", "components": parts}})
-    )
+    made = uniform(scenario(OWN | {"phase_function": {"kind": "mixture", "components": parts}}))
     expected = 0.25 * molecular().density(1.0) + 0.75 * petzold("clear").density(1.0)
     assert float(made.phase_function.density(1.0)) == pytest.approx(float(expected), rel=1e-4)
 
 
 def test_components_add_up(scenario: Any) -> None:
     """The paper's sum, with its own pure water: 22 1/km and 1.5 1/km, particles 0.2 1/m at 550."""
-    made = components.water(scenario(WAYS["components of the paper"]))
+    made = uniform(scenario(WAYS["components of the paper"]))
     assert made.absorption == pytest.approx(0.022, rel=1e-12)
     assert made.scattering == pytest.approx(0.0015 + 0.2 * 550.0 / 532.0, rel=1e-12)
-    made = components.water(scenario(WAYS["components"]))
+    made = uniform(scenario(WAYS["components"]))
     yellow = 0.05 * np.exp(-0.014 * 92.0)
     assert made.absorption == pytest.approx(0.04444 + 0.0155 * 2.0**0.7993 + yellow, rel=1e-4)
     assert made.scattering == pytest.approx(0.00196 + 0.30 * 2.0**0.62 * 550 / 532, rel=1e-3)
@@ -154,7 +159,7 @@ def test_components_add_up(scenario: Any) -> None:
 
 def test_particles_take_the_phase_function_pure_water_keeps_its_own(scenario: Any) -> None:
     water = WAYS["components"] | {"phase_function": {"kind": "petzold", "type": "coastal"}}
-    made = components.water(scenario(water))
+    made = uniform(scenario(water))
     pure = 0.00196
     share = (made.scattering - pure) * petzold("coastal").backscatter_fraction + 0.5 * pure
     found = made.phase_function.backscatter_fraction * made.scattering
@@ -164,7 +169,7 @@ def test_particles_take_the_phase_function_pure_water_keeps_its_own(scenario: An
 
 @pytest.mark.parametrize(("by", "depolarisation"), [("zhang", 0.039), ("morel", 0.09)])
 def test_pure_water_scatters_as_molecules(scenario: Any, by: str, depolarisation: float) -> None:
-    made = components.water(scenario({"type": "components", "pure_scattering": by}))
+    made = uniform(scenario({"type": "components", "pure_scattering": by}))
     ahead, aside = made.phase_function.density([1e-3, 0.5 * np.pi])
     assert aside / ahead == pytest.approx(0.5 * (1.0 + depolarisation), rel=1e-4)
 
@@ -173,7 +178,7 @@ def test_low_and_high_estimates_enclose_the_central_one(scenario: Any) -> None:
     for figure in ("secchi_depth_m", "kd_490_per_m", "turbidity_ntu"):
         value = {"secchi_depth_m": 8.0, "kd_490_per_m": 0.1, "turbidity_ntu": 1.0}[figure]
         low, central, high = (
-            components.water(scenario({figure: value, "estimate": word})).attenuation
+            uniform(scenario({figure: value, "estimate": word})).attenuation
             for word in ("low", "central", "high")
         )
         assert low < central < high
@@ -219,7 +224,7 @@ def faults_of(scenario: Any, water: dict[str, Any], **changes: Any) -> list[str]
             {"type": "harbour", "absorption_per_m": -1.0, "colour": 1},
             [
                 "water.type: 'harbour' is not one of clear, coastal, harbor, stated, components, "
-                "surveyed. Did you mean 'harbor'?",
+                "surveyed, profiled. Did you mean 'harbor'?",
                 "water.absorption_per_m: -1.0 is out of bounds. It must be at least 0.",
                 "water.colour: unknown key.",
             ],
@@ -366,7 +371,7 @@ def test_waters_known_at_one_colour_keep_to_it(
 @pytest.mark.parametrize("wavelength", [400.0, 450.0, 600.0, 650.0])
 def test_components_and_figures_hold_in_all_the_visible(scenario: Any, wavelength: float) -> None:
     found = [
-        components.water(scenario(water, laser={"wavelength_nm": wavelength})).absorption
+        uniform(scenario(water, laser={"wavelength_nm": wavelength})).absorption
         for water in (WAYS["components"], WAYS["secchi"], WAYS["kd"], WAYS["turbidity"])
     ]
     assert all(absorption > 0.0 for absorption in found)

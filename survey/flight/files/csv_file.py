@@ -13,8 +13,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.flight.files.faults import FlightFileError, few, numbers, text_of, track_faults
+from survey.flight.files.faults import FlightFileError, text_of, track_faults
 from survey.flight.track import Track
+from terrain.foreign.text_table import few, numbers
 
 FloatArray = NDArray[np.float64]
 

@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from terrain.foreign.text_table import few
+
 FloatArray = NDArray[np.float64]
 
-SHOWN = 5
 LARGEST_TRACK_BYTES = 1_000_000_000
 FEWEST_RECORDS = 2
 
@@ -56,47 +57,6 @@ def text_of(path: Path) -> str:
         raise FlightFileError(path, ["not UTF-8 text"]) from error
 
 
-def numbers(
-    rows: list[str], *, names: tuple[str, ...], separator: str | None, first_line: int
-) -> FloatArray:
-    """Return a table (rows, columns) of text; blank rows are left out.
-
-    Raises
-    ------
-    ValueError
-        With the first rows that have another number of columns or a word, a line each.
-    """
-    filled = [row for row in rows if row.strip()]
-    if not filled:
-        return np.empty((0, len(names)))
-    try:
-        table = np.loadtxt(filled, delimiter=separator, ndmin=2, comments=None)
-        if table.shape[1] == len(names):
-            return np.asarray(table)
-    except ValueError:
-        pass
-    faults: list[str] = []
-    for line, row in enumerate(rows, start=first_line):
-        if row.strip():
-            faults += _row_faults(row.split(separator), names, line)
-        if len(faults) > SHOWN:
-            faults[SHOWN:] = ["and more of the kind"]
-            break
-    raise ValueError("\n".join(faults))
-
-
-def _row_faults(words: list[str], names: tuple[str, ...], line: int) -> list[str]:
-    if len(words) != len(names):
-        return [f"line {line}: {len(words)} columns, but there should be {len(names)}"]
-    faults = []
-    for word, name in zip(words, names, strict=True):
-        try:
-            float(word)
-        except ValueError:
-            faults.append(f"line {line}: {name} {word.strip()!r} is not a number")
-    return faults
-
-
 def track_faults(
     columns: Mapping[str, FloatArray],
     *,
@@ -137,16 +97,3 @@ def track_faults(
 
 def _places(wrong: NDArray[np.bool_]) -> list[int]:
     return [int(i) for i in np.flatnonzero(wrong)]
-
-
-def few(faults: list[str]) -> list[str]:
-    """Return the first faults of a kind and how many more there are.
-
-    Examples
-    --------
-    >>> few(["a"] * 8)[-2:]
-    ['a', 'and 3 more of the kind']
-    """
-    if len(faults) <= SHOWN:
-        return faults
-    return [*faults[:SHOWN], f"and {len(faults) - SHOWN} more of the kind"]

@@ -6,6 +6,7 @@ from survey.optics.phase.closed_forms import (
     two_term_henyey_greenstein,
 )
 from survey.optics.phase.fournier_forand import (
+    backscatter_reach,
     fournier_forand,
     fournier_forand_of_backscatter,
 )
@@ -17,6 +18,7 @@ from survey.optics.phase.table import read_phase_function, tabled_phase_function
 __all__ = [
     "PhaseFunction",
     "average_particle",
+    "backscatter_reach",
     "fournier_forand",
     "fournier_forand_of_backscatter",
     "henyey_greenstein",

@@ -68,18 +68,27 @@ def fournier_forand_of_backscatter(backscatter_fraction: float) -> PhaseFunction
     from scipy.optimize import brentq
 
     def excess(slope: float) -> float:
-        share = closed_backscatter_fraction(particle_index=_family_index(slope), size_slope=slope)
-        return share - backscatter_fraction
+        return _of_slope(slope) - backscatter_fraction
 
-    low, high = SLOPE_LIMITS
-    if not excess(low) <= 0.0 <= excess(high):
-        reach = [excess(slope) + backscatter_fraction for slope in SLOPE_LIMITS]
+    low, high = backscatter_reach()
+    if not low <= backscatter_fraction <= high:
         raise ValueError(
-            f"backscatter_fraction = {backscatter_fraction:g}: "
-            f"must lie in {reach[0]:.2g} to {reach[1]:.2g}"
+            f"backscatter_fraction = {backscatter_fraction:g}: must lie in {low:.2g} to {high:.2g}"
         )
-    slope = float(brentq(excess, low, high, xtol=1e-12))
+    slope = float(
+        brentq(lambda mu: _of_slope(mu) - backscatter_fraction, *SLOPE_LIMITS, xtol=1e-12)
+    )
     return fournier_forand(particle_index=_family_index(slope), size_slope=slope)
+
+
+def backscatter_reach() -> tuple[float, float]:
+    """Return the least and greatest b_b / b that a slope of 3.01 to 4.99 gives [1]."""
+    low, high = (_of_slope(slope) for slope in SLOPE_LIMITS)
+    return low, high
+
+
+def _of_slope(slope: float) -> float:
+    return closed_backscatter_fraction(particle_index=_family_index(slope), size_slope=slope)
 
 
 def closed_backscatter_fraction(*, particle_index: float, size_slope: float) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import degrees, exp, log
 
+from survey.optics.water.medium import Water
 from survey.optics.water.spectra import NM, tabled
 
 TYLER_COUPLING = 8.69
@@ -31,6 +32,21 @@ def lee_diffuse_attenuation(
     """
     beam = (1.0 + 0.005 * degrees(sun_zenith)) * absorption
     return beam + 4.18 * (1.0 - 0.52 * exp(-10.8 * absorption)) * backscattering
+
+
+def diffuse_attenuation(water: Water) -> float:
+    """Return K_d by Lee et al. (2005) under a sun at the zenith, near what a wide beam sees [1/m].
+
+    Examples
+    --------
+    >>> from survey.optics.water import petzold_water
+    >>> water = petzold_water("coastal", refractive_index=1.33, group_index=1.33)
+    >>> f"{diffuse_attenuation(water):.3f} 1/m"
+    '0.190 1/m'
+    """
+    return lee_diffuse_attenuation(
+        absorption=water.absorption, backscattering=water.backscattering, sun_zenith=0.0
+    )
 
 
 def austin_petzold_attenuation(*, kd_490: float, wavelength: float) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -16,7 +16,8 @@ from survey.optics.water.medium import Water
 FloatArray = NDArray[np.float64]
 
 FINEST_STEP = 0.05
-"""Relative change of a coefficient within one slice of a continuous profile [1]."""
+"""Change of a coefficient within a slice, over the larger of the profile's values beside it [1]."""
+ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,13 +109,34 @@ class WaterColumn:
         """Return the water at a depth [m]."""
         return [layer.water for layer in self.layers if layer.top <= max(depth, 0.0)][-1]
 
+    def integral(self, depth: ArrayLike, coefficient: Callable[[Water], float]) -> FloatArray:
+        """Integral of any coefficient [1/m] of the waters from the surface down to depths [m], [1].
+
+        Examples
+        --------
+        >>> from survey.optics.water import petzold_water
+        >>> from survey.optics.water.apparent import diffuse_attenuation
+        >>> column = WaterColumn.uniform(
+        ...     petzold_water("coastal", refractive_index=1.34, group_index=1.36))
+        >>> column.integral([0.0, 10.0], diffuse_attenuation).round(2).tolist()
+        [0.0, 1.9]
+        """
+        depth = np.asarray(depth, dtype=np.float64)
+        tops = np.array([layer.top for layer in self.layers] + [math.inf])
+        inside = np.clip(depth[..., None], tops[:-1], tops[1:]) - tops[:-1]
+        return np.asarray(inside @ np.array([coefficient(layer.water) for layer in self.layers]))
+
     def absorbed(self, depth: ArrayLike) -> FloatArray:
         """Integral of the absorption coefficient from the surface down to ``depth`` [m], [1]."""
-        return self._integral(depth, [layer.water.absorption for layer in self.layers])
+        return self.integral(depth, lambda water: water.absorption)
 
     def scattered(self, depth: ArrayLike) -> FloatArray:
         """Integral of the scattering coefficient from the surface down to ``depth`` [m], [1]."""
-        return self._integral(depth, [layer.water.scattering for layer in self.layers])
+        return self.integral(depth, lambda water: water.scattering)
+
+    def attenuated(self, depth: ArrayLike) -> FloatArray:
+        """Integral of the beam attenuation from the surface down to ``depth`` [m], [1]."""
+        return self.integral(depth, lambda water: water.attenuation)
 
     def mean(self, depth: float) -> Water:
         """Return uniform water with the mean coefficients down to a depth [m].
@@ -142,12 +164,6 @@ class WaterColumn:
             added.append(Layer(top=bottom, water=self.at(bottom)))
         return WaterColumn(layers=tuple(sorted((*kept, *added), key=lambda layer: layer.top)))
 
-    def _integral(self, depth: ArrayLike, coefficients: Sequence[float]) -> FloatArray:
-        depth = np.asarray(depth, dtype=np.float64)
-        tops = np.array([layer.top for layer in self.layers] + [math.inf])
-        inside = np.clip(depth[..., None], tops[:-1], tops[1:]) - tops[:-1]
-        return np.asarray(inside @ np.asarray(coefficients))
-
 
 def profiled_water(
     *,
@@ -162,12 +178,12 @@ def profiled_water(
 
     Sliced so finely that no coefficient changes by more than `FINEST_STEP` within a slice, which
     has their means: optical depths at its ends are exact. Above the first and below the last depth
-    the coefficients stay.
+    the coefficients stay as they are there.
 
     Parameters
     ----------
     depth : sequence of float
-        Increasing depths under mean level [m].
+        Increasing depths under mean level, the first not above it [m].
     absorption, scattering : sequence of float
         Coefficients there [1/m].
     phase_functions : sequence of PhaseFunction
@@ -178,7 +194,7 @@ def profiled_water(
     Raises
     ------
     ValueError
-        When depths do not increase or a coefficient is negative.
+        When depths do not increase from the surface or a coefficient is negative.
 
     Examples
     --------
@@ -190,28 +206,43 @@ def profiled_water(
     >>> round(float(column.scattered(10.0)), 9), len(column.layers)
     (1.5, 11)
     """
-    indices = {"refractive_index": refractive_index, "group_index": group_index}
-    layers: list[Layer] = []
-    for i, (upper, lower) in enumerate(pairwise(depth)):
-        ends = [(v[i], v[i + 1]) for v in (absorption, scattering)]
-        slices = max(1, *(math.ceil(abs(b - a) / (FINEST_STEP * max(a, b, 1e-9))) for a, b in ends))
-        middle = (np.arange(slices) + 0.5) / slices
-        layers += [
+    if depth[0] < 0.0 or any(not below > above for above, below in pairwise(depth)):
+        raise ValueError("water profile: depths must increase from the surface down")
+    tops = _slices(np.array(depth), np.array([absorption, scattering]))
+    middle = np.append(0.5 * (tops[1:] + tops[:-1]), depth[-1])
+    nearest = np.rint(np.interp(middle, depth, np.arange(len(depth)))).astype(np.int64)
+    rows = zip(
+        tops.tolist(),
+        np.interp(middle, depth, absorption).tolist(),
+        np.interp(middle, depth, scattering).tolist(),
+        [phase_functions[i] for i in nearest],
+        strict=True,
+    )
+    return WaterColumn(
+        layers=tuple(
             Layer(
-                top=0.0
-                if not layers and i == 0 and j == 0
-                else upper + (lower - upper) * j / slices,
+                top=top,
                 water=Water(
-                    absorption=float(ends[0][0] + (ends[0][1] - ends[0][0]) * middle[j]),
-                    scattering=float(ends[1][0] + (ends[1][1] - ends[1][0]) * middle[j]),
-                    phase_function=phase_functions[i if middle[j] < 0.5 else i + 1],
-                    **indices,
+                    absorption=a,
+                    scattering=b,
+                    phase_function=phase,
+                    refractive_index=refractive_index,
+                    group_index=group_index,
                 ),
             )
-            for j in range(slices)
-        ]
-    last = Water(
-        absorption=absorption[-1], scattering=scattering[-1],
-        phase_function=phase_functions[-1], **indices,
-    )  # fmt: skip
-    return WaterColumn(layers=(*layers, Layer(top=depth[-1] if layers else 0.0, water=last)))
+            for top, a, b, phase in rows
+        )
+    )
+
+
+def _slices(depth: FloatArray, coefficients: FloatArray) -> FloatArray:
+    """Return the tops of the slices of a profile, from the surface to its last depth."""
+    larger = np.maximum(coefficients[:, 1:], coefficients[:, :-1])
+    change = np.abs(np.diff(coefficients)) / np.where(larger > 0.0, larger, 1.0)
+    counts = np.ceil(np.maximum(change.max(axis=0, initial=0.0) / FINEST_STEP - ROUNDING, 1.0))
+    within = [
+        np.linspace(upper, lower, int(count), endpoint=False)
+        for (upper, lower), count in zip(pairwise(depth), counts, strict=True)
+    ]
+    above = [0.0] if depth[0] > 0.0 else []
+    return np.concatenate([above, *within, depth[-1:]])

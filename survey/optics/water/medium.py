@@ -60,6 +60,11 @@ class Water:
         """Beam attenuation c = a + b [1/m]."""
         return self.absorption + self.scattering
 
+    @property
+    def backscattering(self) -> float:
+        """Scattering by more than 90 degrees b_b [1/m]."""
+        return self.scattering * self.phase_function.backscatter_fraction
+
 
 def petzold_water(
     name: str,
