@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.optics.interface import fresnel_reflectance
-from survey.optics.water import petzold_water
+from survey.optics.water import WaterColumn, petzold_water
 from survey.transport.directions import drawn, turned
+from survey.transport.layers import kernel_layers
 from survey.transport.random import start_stream, uniform
-from survey.transport.scene import forward_medium
 from survey.transport.tracks import draw_tracks
 from survey.transport.waveforms import blurred, pulse_taps
 from terrain.generators import Ground, plane
@@ -89,21 +89,21 @@ def hits(calls: int, grid: SeabedGrid, state: State) -> float:
 def cases() -> Iterator[tuple[str, int, Callable[[], object]]]:
     """Yield what is timed, how often it happens in a call, and the call."""
     state = np.array([3, 5], np.uint64)
-    medium = forward_medium(petzold_water("coastal", refractive_index=1.34, group_index=1.36))
+    water = petzold_water("coastal", refractive_index=1.34, group_index=1.36)
+    layers = kernel_layers(WaterColumn.uniform(water))
     frame = MapFrame(easting=0.0, northing=0.0, epsg=25832, vertical_epsg=5714)
     ground = Ground(map_frame=frame, length=400.0, width=400.0, reflectance=0.1)
     grid = plane(ground=ground, depth=10.0, spacing=TRIANGLE_SIDE).grid
     waveforms, taps = np.zeros((PIXELS, BINS)), pulse_taps(sigma=4.25, width=1.0, pad=20)
     waveforms[:, 60:260] = 1.0
-    split = np.cos(np.radians(45.0))
     yield "stream begun, a number", CALLS, lambda: streams(CALLS, state)
     yield "uniform number", CALLS, lambda: numbers(CALLS, state)
-    yield "scattering", CALLS, lambda: scatterings(CALLS, medium.sampler, state)
+    yield "scattering", CALLS, lambda: scatterings(CALLS, layers.samplers[0], state)
     yield "Fresnel reflectance", CALLS, lambda: reflectances(CALLS, state)
     yield (
         "leg of a track",
         TRACKS * LEGS,
-        lambda: draw_tracks(medium, 1, TRACKS, LEGS, 10.0, split, 1, 2),
+        lambda: draw_tracks(layers, 1, TRACKS, LEGS, 10.0, 1, 2),
     )
     yield "ray to 100,000 triangles", CALLS, lambda: hits(CALLS, grid, state)
     yield "pulse on a surface echo", PIXELS, lambda: blurred(waveforms, taps)
