@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from survey.flight.trajectory import fly_lines, footprint
 from survey.optics.water import PAPER_COEFFICIENTS
+from survey.planning.plan import make_plan
 from survey.scenario import Scenario, ScenarioError, components, load_scenario
 from survey.scenario.gallery import gallery
 from survey.scenario.load import parse_overrides
@@ -46,6 +47,7 @@ def test_every_scenario_is_sound_and_says_what_to_expect(name: str) -> None:
 def test_the_gallery_is_complete() -> None:
     names = {"measured-seabed", "sandbar", "wreck", "turned-footprint", "too-deep"}
     names |= {"rolling-aircraft", "area-survey", "harbor-wreck", "reef-with-swell"}
+    names |= {"next-generation"}
     assert names | PAPER.keys() <= gallery().keys()
 
 
@@ -151,6 +153,20 @@ def test_harbor_wreck_s_line_sees_all_that_its_basin_is_made_of() -> None:
         for c in cubes
     ]
     assert tops == pytest.approx([-4.0 + cube.side_m for cube in cubes], abs=0.3)
+
+
+def test_next_generation_is_safe_to_look_up_at_and_denser_than_the_paper_s_camera() -> None:
+    """The Norwegian specification for airborne lidar bathymetry 2025.1 asks for 5 points/m2."""
+    scenario = load_scenario("next-generation")
+    plan = make_plan(scenario)
+    assert plan.eye.binocular_distance < 0.5 * plan.height
+    assert plan.frame_density > 10.0
+    assert plan.density > 25.0
+    assert plan.expectation.run_day.depth > plan.depth[2]
+    assert not plan.bottom.swath.gaps
+    paper = make_plan(load_scenario("paper-p02").replace(**{"flight.frames_per_line": 2}))
+    assert paper.density < 0.5
+    assert scenario.laser.pulse_width_ns < 0.2 * load_scenario("paper-p02").laser.pulse_width_ns
 
 
 @pytest.mark.parametrize(("name", "water"), PAPER.items())
