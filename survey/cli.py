@@ -146,6 +146,39 @@ def plan(
 
 
 @app.command()
+def effects(
+    scenario: Annotated[str, typer.Argument(help="A scenario file, or a name of the gallery.")],
+    settings: Settings = None,
+    frames: Annotated[
+        str | None, typer.Option(metavar="A:B", help="Only these frames, from 0, B excluded.")
+    ] = None,
+    workers: Annotated[
+        int, typer.Option(min=0, help="Frames at once; 0 is one for each core.")
+    ] = 0,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, not a table.")] = False,
+) -> None:
+    """Fly a mission without each of its effects in turn, and say what each costs."""
+    from survey.scenario.components import flight_plan
+    from survey.scenario.load import load_scenario, parse_frames, parse_overrides
+
+    flown = load_scenario(scenario, parse_overrides(settings or []))
+    chosen = parse_frames(frames, flight_plan(flown).frame_count)
+    from survey.effects import report
+    from survey.effects.costs import costs
+    from survey.products.json_file import json_bytes
+
+    found = []
+    if not as_json:
+        typer.echo(report.heading())
+    for cost in costs(flown, frames=chosen, workers=workers):
+        found.append(report.as_json(cost))
+        if not as_json:
+            typer.echo(report.row(cost))
+    if as_json:
+        typer.echo(json_bytes({"costs": found}).decode(), nl=False)
+
+
+@app.command()
 def scenarios() -> None:
     """List the scenarios that come with the package."""
     from survey.scenario.gallery import gallery, title

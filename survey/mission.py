@@ -27,7 +27,7 @@ from survey.transport.random import COUNTS, chance
 
 def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
     """Fly one flash: expected light, readings, ranges, points, and the truth beside them."""
-    engine = mission.engine_at(frame.time)
+    engine, surface = mission.engine, mission.sea.at(frame.time)
     noise = mission.noise_at(frame.measured, time=frame.time)
     waveforms = engine.flash(pose=frame.pose, frame=frame.index, time=frame.time)
     draws = chance(seed=engine.seed, purpose=COUNTS, frame=frame.index)
@@ -41,6 +41,7 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
         rays=rays,
         expected_level=mission.expected_level(frame.time),
         refractive_index=engine.water.refractive_index,
+        wave_height=surface.wave_height,
     )
     bottom = last_echo(
         counts=readings.counts,
@@ -50,7 +51,7 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
 
     targets = true_targets(
         seabed=mission.seabed,
-        surface=engine.surface,
+        surface=surface,
         water=engine.water,
         pose=frame.pose,
         rays=pixel_rays(camera=mission.camera, pose=frame.pose),
@@ -121,7 +122,7 @@ def fly(
     chosen = set(frames if frames is not None else range(len(mission.frames)))
     missing = [f for f in mission.frames if f.index in chosen and f.index not in run.whole]
     watch.started(len(missing))
-    for index, result, seconds in _flown(mission, missing, workers or os.cpu_count() or 1):
+    for index, result, seconds in fly_frames(mission, missing, workers):
         run.keep(index, result)
         clock.add(seconds)
         watch.frame_done(index, seconds)
@@ -157,16 +158,20 @@ def _metres(value: object) -> str:
     return f"{value:.3f} m" if isinstance(value, float) else "not measured"
 
 
-def _flown(
-    mission: Mission, frames: Sequence[Frame], workers: int
+def fly_frames(
+    mission: Mission, frames: Sequence[Frame], workers: int = 0
 ) -> Iterator[tuple[int, FrameResult, float]]:
-    """Yield the frames as they are done; the kernels run without the interpreter lock."""
+    """Yield frames as they are done: number, result, seconds that it took.
+
+    So many ``workers`` fly at once, 0 is one for each core; the kernels run without the
+    interpreter lock.
+    """
 
     def timed(frame: Frame) -> tuple[int, FrameResult, float]:
         start = time.perf_counter()
         return frame.index, fly_frame(mission, frame), time.perf_counter() - start
 
-    pool = ThreadPoolExecutor(workers)
+    pool = ThreadPoolExecutor(workers or os.cpu_count() or 1)
     try:
         for flown in as_completed([pool.submit(timed, frame) for frame in frames]):
             yield flown.result()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from math import hypot
@@ -49,7 +49,6 @@ class Mission:
     detector: Detector
     seabed: Seabed
     sea: SeaSurface
-    engine_over: Callable[[SeaSurface], Engine]
     engine: Engine
     level_error: float
     posed_noise: PosedNoise
@@ -60,10 +59,6 @@ class Mission:
     def noise(self) -> NoiseModel:
         """The noise model of the level sensor."""
         return self.posed_noise.level
-
-    def engine_at(self, time: float) -> Engine:
-        """Return the engine at the water level of a time [s]."""
-        return self.engine if self.sea.tide is None else self.engine_over(self.sea.at(time))
 
     def expected_level(self, time: float) -> float:
         """Return the elevation of the water that the survey expects at a time [s], [m]."""
@@ -99,15 +94,13 @@ def prepare(scenario: Scenario) -> Mission:
     seabed = components.seabed(scenario)
     seabed.require_coverage(footprints(camera, frames, surface.lowest_level))
     require_air(frames, highest=seabed.grid.z_high)
-    engine_over = partial(_engine, scenario, seabed, water)
     return Mission(
         frames=frames,
         camera=camera,
         detector=components.detector(scenario),
         seabed=seabed,
         sea=surface,
-        engine_over=engine_over,
-        engine=engine_over(surface),
+        engine=_engine(scenario, seabed, water, surface),
         level_error=scenario.processing.water_level_error_m,
         posed_noise=posed_noise(scenario, frames[0], surface),
         products=ProductSettings(

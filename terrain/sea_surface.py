@@ -107,6 +107,11 @@ class SeaSurface:
         return self.upwind_slope_variance + self.crosswind_slope_variance
 
     @property
+    def wave_height(self) -> float:
+        """Significant height of the resolved waves and swell, 0 of a level sea [m]."""
+        return 0.0 if self.waves is None else self.waves.significant_height
+
+    @property
     def resolved_slope_variance(self) -> tuple[float, float]:
         """Expected slope variance of the resolved wind waves along and across the wind [1]."""
         if self.waves is None:

@@ -70,9 +70,11 @@ def render(flown: FlownSurvey, *, caption: str) -> bytes:
         flown.bottom, flown.map_frame, water_level=flown.water_level, exaggeration=factor
     )
     depths = depth_range(bottom[scene.DEPTH])
-    contents = np.vstack([bottom.points, flown.positions])
-    view = oblique_view(contents, axis=axis, size=SIZE, margins=MARGINS)
     bar = round_length(0.3 * length)
+    bar_start = _beside(bottom.points, axis, aside=0.06 * length)
+    bar_end = bar_start - np.append(bar * axis, 0.0)
+    contents = np.vstack([bottom.points, flown.positions, bar_start, bar_end])
+    view = oblique_view(contents, axis=axis, size=SIZE, margins=MARGINS)
     return draw_labels(
         _picture(flown, bottom, view, factor=factor, depths=depths),
         view,
@@ -80,7 +82,7 @@ def render(flown: FlownSurvey, *, caption: str) -> bytes:
         caption=f"{_scales(factor, _contour_step(depths))}\n{caption}",
         depths=depths,
         labels=_labels(flown, view),
-        bar_start=_beside(bottom.points, axis, aside=0.06 * length),
+        bar_start=bar_start,
         bar_axis=np.append(-axis, 0.0),
         bar_length=bar,
     )

@@ -21,7 +21,10 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-LAND_ABOVE_WATER = 0.75
+LAND_ABOVE_WATER = 0.75  # [m]
+CREST_PER_WAVE_HEIGHT = (
+    1.25  # five deviations: Gaussian waves rise above it at 3 places in ten million
+)
 ENOUGH_SURFACE_ECHOES = 20
 OBJECT_ABOVE_BOTTOM = 1.0
 OBJECT_NEIGHBOURHOOD = 15
@@ -35,6 +38,8 @@ class WaterLine:
     ----------
     level : float
         Estimated elevation of the water [m].
+    reach : float
+        How far above and below it there may be water [m].
     land, water : array (rows, columns)
         Pixels whose first echo lies on land, and pixels over water.
     first : array (rows, columns, 3)
@@ -44,6 +49,7 @@ class WaterLine:
     """
 
     level: float
+    reach: float
     land: BoolArray
     water: BoolArray
     first: FloatArray
@@ -56,22 +62,45 @@ class WaterLine:
 
 
 def find_water(
-    *, first: Echo, frame: Frame, rays: FloatArray, expected_level: float, refractive_index: float
+    *,
+    first: Echo,
+    frame: Frame,
+    rays: FloatArray,
+    expected_level: float,
+    refractive_index: float,
+    wave_height: float = 0.0,
 ) -> WaterLine:
     """Tell land from water by the first echoes and estimate the water level.
 
-    The level is the median elevation of the first echoes within 0.75 m of the expected level, or
-    that level itself where there are fewer than 20. What lies more than 0.75 m above it is land.
+    Water reaches 0.75 m above and below its level, or as far as the waves do where that is more:
+    1.25 of their significant height. The level is the median elevation of the first echoes that
+    near to the expected level, or that level itself where there are fewer than 20. What lies higher
+    is land; hence a beach that waves could top is taken for water.
+
+    Parameters
+    ----------
+    first : Echo
+    frame : Frame
+    rays : array (rows, columns, 3)
+        Unit directions by the measured pose.
+    expected_level : float
+        Of the water, as its gauge tells [m].
+    refractive_index : float
+        Of the water [1].
+    wave_height : float
+        Significant height of the waves, as the survey's log tells [m].
     """
     position = frame.measured.position
     places = place_in_air(position=position, rays=rays, time=first.time)
     elevation = places[..., 2]
-    near = np.abs(elevation - expected_level) <= LAND_ABOVE_WATER
+    reach = max(LAND_ABOVE_WATER, CREST_PER_WAVE_HEIGHT * wave_height)
+    near = np.abs(elevation - expected_level) <= reach
     enough = near.sum() >= ENOUGH_SURFACE_ECHOES
     level = float(np.median(elevation[near])) if enough else expected_level
-    land = elevation > level + LAND_ABOVE_WATER
+    land = elevation > level + reach
     return WaterLine(
         level=level,
+        reach=reach,
         land=land,
         water=~land,
         first=places,
@@ -86,7 +115,7 @@ def surface_points(
 ) -> PointCloud:
     """Return the first echoes on the water: class 41."""
     on_water = first.found & ~line.land
-    on_water &= np.abs(line.first[..., 2] - line.level) <= LAND_ABOVE_WATER
+    on_water &= np.abs(line.first[..., 2] - line.level) <= line.reach
     wet = targets.classification != PointClass.GROUND
     return _cloud(
         which=on_water,

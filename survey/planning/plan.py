@@ -78,6 +78,8 @@ class SurveyPlan:
     expectation : Expectation
         How deep the bottom may lie.
     eye : EyeSafety
+    wave_height : float
+        Significant height of the waves that the plan leaves out [m].
     output_bytes, run_seconds : float
         Of a run [bytes], [s].
     workers : int
@@ -98,6 +100,7 @@ class SurveyPlan:
     depth: tuple[float, float, float]
     expectation: Expectation
     eye: EyeSafety
+    wave_height: float
     output_bytes: float
     run_seconds: float
     workers: int
@@ -180,6 +183,7 @@ def make_plan(scenario: Scenario) -> SurveyPlan:
         depth=depth,
         expectation=expectation(scenario, seabed=seabed, height=height),
         eye=_eye(scenario, camera, height),
+        wave_height=surface.wave_height,
         output_bytes=output_bytes(size),
         run_seconds=run_seconds(size, workers=workers),
         workers=workers,

@@ -38,6 +38,7 @@ def as_json(plan: SurveyPlan) -> dict[str, Any]:
         "flight_time_s": _number(plan.flight_seconds),
         "flight_length_m": _number(plan.flight_length),
         "seabed_depth_m": depths,
+        "wave_height_left_out_m": _number(plan.wave_height),
         "overlap": {
             name: {"depth_m": depth, **_overlaps(cover)} for name, (cover, depth) in grounds.items()
         },
@@ -168,6 +169,7 @@ def as_text(plan: SurveyPlan) -> str:
             ),
             _row("gaps", *(_gap_words(cover) for cover in _grounds(plan))),
             "",
+            *_sea_words(plan),
             f"density       {plan.density:.2f} points/m2 of the seabed if every pixel finds it, "
             f"{plan.frame_density:.2f} in one frame",
             f"depth limit   day {expected.day.depth:.1f} m, night {expected.night.depth:.1f} m"
@@ -184,6 +186,14 @@ def as_text(plan: SurveyPlan) -> str:
             f"              by {SOURCE}",
         )
     )
+
+
+def _sea_words(plan: SurveyPlan) -> Iterator[str]:
+    if plan.wave_height > 0.0:
+        yield (
+            f"sea           taken as level: waves of {plan.wave_height:.1f} m (significant) bend "
+            "what a run sees, and take it longer"
+        )
 
 
 def _eye_words(plan: SurveyPlan) -> str:

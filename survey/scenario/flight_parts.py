@@ -192,9 +192,9 @@ def _read_track(
     path: Path, stamp: tuple[int, int], kind: kinds.TrackFormat, prefix: str, epsg: int
 ) -> Track:
     """Read a track once; another time or size of the file is another file."""
-    from survey.flight.files import any_track
+    from survey.flight.files import foreign
 
-    return any_track.read_track(path, kind=kind, epsg=epsg, prefix=prefix)
+    return foreign.read_track(path, kind=kind, epsg=epsg, prefix=prefix)
 
 
 def area_corners(given: kinds.AreaFlight, *, epsg: int, folder: Path) -> FloatArray:
@@ -215,9 +215,9 @@ def area_corners(given: kinds.AreaFlight, *, epsg: int, folder: Path) -> FloatAr
 
 @lru_cache(maxsize=4)
 def _read_area(path: Path, stamp: tuple[int, int], epsg: int) -> FloatArray:
-    from survey.flight.files.geojson_file import read_area
+    from survey.flight.files import foreign
 
-    return read_area(path, epsg=epsg)
+    return foreign.read_area(path, epsg=epsg)
 
 
 def beginning(plan: Plan) -> tuple[FloatArray, float]:

@@ -213,19 +213,20 @@ class Engine:
 
     def _scene(self, pose: Pose, time: float) -> Scene:
         """Return the scene of a flash: the box around the lit water and the seabed in it."""
-        outline, level = footprint(self.camera, pose, self.surface.level), self.surface.level
+        surface = self.surface.at(time)
+        outline, level = footprint(self.camera, pose, surface.level), surface.level
         deepest = max(0.0, min(self._deepest_in_gate, level - self._grid.z_low))
         margin = deepest + self.receiver.aperture_radius
         west, south = outline.min(axis=0) - margin
         east, north = outline.max(axis=0) + margin
-        waves = self.surface.sheet(time=time, west=west, east=east, south=south, north=north)
+        waves = surface.sheet(time=time, west=west, east=east, south=south, north=north)
         lowest, highest, top = elevations_within(
             self._grid, west=west, east=east, south=south, north=north
         )
         return Scene(
-            sea=facet_sea(self.surface),
-            drawn=drawn_sea(self.surface),
-            wavy=self.surface.waves is not None,
+            sea=facet_sea(surface),
+            drawn=drawn_sea(surface),
+            wavy=surface.waves is not None,
             waves=waves,
             grid=self._grid,
             reflectance=self._reflectance,

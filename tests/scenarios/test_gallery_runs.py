@@ -178,6 +178,32 @@ def test_harbor_wreck_shows_sand_and_objects_and_loses_the_seagrass() -> None:
     assert np.median(errors) == pytest.approx(-0.2, abs=0.1)
 
 
+def dense_cells(cloud: PointCloud) -> float:
+    """Return the share of the 2 x 2 m cells inside a cloud that hold 5 points/m2 of the bottom."""
+    solid = cloud.position[np.isin(cloud.classification, BOTTOM), :2]
+    low, high = np.ceil(solid.min(axis=0) / 2.0) * 2.0, np.floor(solid.max(axis=0) / 2.0) * 2.0
+    edges = [np.arange(low[axis], high[axis] + 1.0, 2.0) for axis in (0, 1)]
+    counts, _, _ = np.histogram2d(*solid.T, bins=edges)
+    return float((counts >= 5.0 * 2.0 * 2.0).mean())
+
+
+def test_next_generation_is_dense_enough_where_the_paper_s_camera_is_not() -> None:
+    """5 points/m2 in 80 % of cells; a 25th of the field and of the light, over a cube of 1 m."""
+    middle = {"camera.rows": 32, "camera.columns": 48, "laser.pulse_energy_j": 0.005 / 25.0}
+    _, (cloud,) = flown("next-generation", slice(2, 3), **middle, **{"seabed.margin_m": 60.0})
+    assert dense_cells(cloud) > 0.9
+    assert np.percentile(np.abs(bottom_errors(cloud)), 95.0) < 0.15
+    assert abs(np.median(bottom_errors(cloud))) < 0.05
+    beside = np.linalg.norm(cloud.truth[:, :2] - [4.0, 20.0], axis=1)
+    top = (beside < 0.7) & (cloud.truth[:, 2] > -4.2)
+    on_cube = top & (cloud.position[:, 2] > -4.3)
+    assert on_cube.sum() >= 3
+    assert np.median(cloud.position[on_cube, 2]) == pytest.approx(-4.0, abs=0.15)
+    _, (paper,) = flown("sandbar", slice(3, 4), **{"flight.lines": 1})
+    assert share(paper, *BOTTOM) > 0.9
+    assert dense_cells(paper) == 0.0
+
+
 @pytest.mark.slow
 def test_too_deep_shows_nothing() -> None:
     _, clouds = flown("too-deep", slice(0, 4))

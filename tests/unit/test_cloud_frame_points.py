@@ -17,13 +17,16 @@ FloatArray = NDArray[np.float64]
 BEACH = {"depth": 0.0, "gradient": 0.11, "heading_deg": 90.0}
 
 
-def water_line(look: Any, first_time: FloatArray, expected_level: float = 0.4) -> WaterLine:
+def water_line(
+    look: Any, first_time: FloatArray, expected_level: float = 0.4, wave_height: float = 0.0
+) -> WaterLine:
     return find_water(
         first=look.echo(first_time),
         frame=look.frame,
         rays=look.rays,
         expected_level=expected_level,
         refractive_index=look.water.refractive_index,
+        wave_height=wave_height,
     )
 
 
@@ -73,6 +76,24 @@ def test_land_is_told_from_water_by_its_height(look_at: Looks) -> None:
     assert not line.land[height < 0.65].any()
     assert line.land.sum() > 300
     assert np.array_equal(np.isfinite(line.surface_time), ~line.land)
+
+
+def test_crests_of_waves_are_no_land_and_troughs_are_kept(look_at: Looks) -> None:
+    """A swell of 1.6 m, significant: crests and troughs of 1.5 m, and a rock of 2.5 m."""
+    look = look_at()
+    column = np.arange(64)
+    height = np.broadcast_to(1.5 * np.sin(0.3 * column), (32, 64)).copy()
+    height[:4] = 2.5
+    first = look.surface_time + 2.0 * height / look.rays[..., 2] / 299_792_458.0
+    line = water_line(look, first, wave_height=1.6)
+    assert np.array_equal(line.land, height == 2.5)
+    points = surface_points(
+        line=line, first=look.echo(first), frame=look.frame, targets=look.targets
+    )
+    assert len(points) == 28 * 64
+    assert points.position[:, 2].min() == pytest.approx(0.4 - 1.5, abs=0.05)
+    calm = water_line(look, first)
+    assert calm.land[4:].mean() > 0.2
 
 
 def test_surface_points_lie_on_the_water_and_not_on_land(look_at: Looks) -> None:

@@ -311,6 +311,10 @@ def test_areas_of_the_older_edition_name_their_map(name: str, tmp_path: Path) ->
         (polygon(None), "not a pair of numbers"),
         (polygon([[5e5, 6e6], [5e5, 6.1e6], [6e5, 6e6]]), "no longitudes and latitudes"),
         ({**polygon([[9, 54]]), "crs": {"name": "mine"}}, "names no EPSG code"),
+        (
+            {**polygon([[9, 54]]), "crs": {"name": "EPSG:999999"}},
+            "crs: there is no map EPSG:999999",
+        ),
     ],
 )
 def test_what_is_no_area_is_told(value: Any, words: str, tmp_path: Path) -> None:

@@ -21,6 +21,7 @@ from survey.flight.trajectory import footprints, require_air
 from survey.scenario import Scenario, ScenarioError, components
 from survey.scenario.motion_parts import build_motion, build_navigation
 from survey.scenario.toml_text import to_toml
+from terrain.foreign.faults import ForeignFileError
 
 CORNERS = [[5.0e5, 6.0e6], [5.002e5, 6.0e6], [5.002e5, 6.0006e6], [5.0e5, 6.0006e6]]
 RECEIVER = {"aperture_radius_m": 0.005, "filter_width_nm": 1.0}
@@ -311,3 +312,37 @@ def test_areas_from_geojson_are_part_of_the_run(make: Any, tmp_path: Path) -> No
     (tmp_path / "area.geojson").write_text(json.dumps(holed) + " ", encoding="utf-8")
     (line,) = faults_of(make, flight={"file": "area.geojson", "heading_deg": 0.0})
     assert line == ("flight.file: area.geojson: the polygon has 1 holes. Keep its outline alone.")
+
+
+def test_areas_are_read_in_a_child_whatever_becomes_of_it(make: Any, tmp_path: Path) -> None:
+    """A list nested 200,000 deep; and the parent never sees the file's text."""
+    deep = 200_000
+    (tmp_path / "deep.geojson").write_text("[" * deep + "]" * deep, encoding="utf-8")
+    (line,) = faults_of(make, flight={"file": "deep.geojson", "heading_deg": 0.0})
+    assert line.startswith("flight.file: deep.geojson: no GeoJSON: maximum recursion depth")
+
+
+def test_foreign_files_are_opened_by_children_alone(
+    make: Any, tables: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "area.geojson").write_text("{}", encoding="utf-8")
+    (tmp_path / "phase.csv").write_text("angle_deg,value\n1,8\n", encoding="utf-8")
+    asked = []
+
+    def reading(reader: str, path: Path, **_: Any) -> Any:
+        asked.append((reader, path.name))
+        raise ForeignFileError(path, ["not touched"])
+
+    monkeypatch.setattr("survey.flight.files.foreign.read_foreign", reading)
+    monkeypatch.setattr("survey.optics.phase.table.read_foreign", reading)
+    phase = {"kind": "table", "file": "phase.csv"}
+    lines = faults_of(
+        make,
+        flight={"file": "area.geojson", "heading_deg": 0.0},
+        water={"type": "coastal", "phase_function": phase},
+    )
+    assert [line.split(": ")[-1] for line in lines] == ["not touched."] * 2
+    assert set(asked) == {
+        ("survey.flight.files.foreign:area_corners", "area.geojson"),
+        ("survey.optics.phase.table:table_columns", "phase.csv"),
+    }

@@ -20,9 +20,13 @@ from survey.flight.plan import FlightPlan
 from survey.flight.pose import Frame, Pose
 from survey.flight.trajectory import fly_lines, footprint
 from survey.preparation import prepare
+from survey.products.grids import grid_elevation
 from survey.products.las_file import scan_angle_deg
+from survey.scenario import components
 from survey.scenario.scenario import Scenario
 from survey.sensor.camera import Camera
+from terrain.waves import Swell, WaveField, elevation_and_slopes
+from terrain.waves.dispersion import wavenumber
 
 Looks = Callable[..., Any]
 FloatArray = NDArray[np.float64]
@@ -149,6 +153,35 @@ def test_depth_counts_down_and_elevation_up(look_at: Looks) -> None:
     assert look.targets.depth == pytest.approx(6.4)
 
 
+@pytest.mark.parametrize(("towards", "way"), HEADINGS)
+def test_a_slope_falls_towards_its_downhill(
+    tables: dict[str, Any], towards: float, way: tuple[int, int]
+) -> None:
+    tables["seabed"] = {"kind": "slope", "depth_m": 9.0, "slope_deg": 3.0, "downhill_deg": towards}
+    bed = components.seabed(Scenario.from_tables(tables, name="bed.toml", folder=Path()))
+    places = np.array([300.0, 750.0]) + 20.0 * np.outer([-1.0, 1.0], way)
+    uphill, downhill = bed.elevation_at(*places.T)
+    assert uphill - downhill == pytest.approx(40.0 * np.tan(np.radians(3.0)))
+
+
+@pytest.mark.parametrize(("comes_from", "back"), HEADINGS)
+def test_waves_run_away_from_where_they_come_from(comes_from: float, back: tuple[int, int]) -> None:
+    swell = Swell(height=1.0, period=8.0, comes_from=np.radians(comes_from))
+    field = WaveField.realised(wind_sea=None, swell=[swell], chance=np.random.default_rng(1))
+    crest_speed = 2.0 * np.pi / 8.0 / wavenumber(8.0)
+    run = -crest_speed * np.array(back)
+    places = np.random.default_rng(2).uniform(-150.0, 150.0, (400, 2))
+
+    def heights(at: FloatArray, time: float) -> FloatArray:
+        box = dict(zip(("west", "east", "south", "north"), (-200.0, 200.0) * 2, strict=True))
+        sheet = field.lattice(time=time, level=0.0, **box)
+        return np.array([elevation_and_slopes(sheet, x, y)[0] for x, y in at])
+
+    before = heights(places, 0.0)
+    assert np.corrcoef(before, heights(places + 2.0 * run, 2.0))[0, 1] > 0.7
+    assert np.corrcoef(before, heights(places - 2.0 * run, 2.0))[0, 1] < 0.0
+
+
 def test_water_bends_the_view_towards_nadir() -> None:
     ray = np.array([0.6, 0.0, -0.8])
     path = bend_at_surface(
@@ -262,3 +295,23 @@ def test_the_scan_angle_of_las_is_positive_to_the_right(look_at: Looks) -> None:
     angle = scan_angle_deg(cloud, [frame])
     assert (angle[cloud.row < 16] < 0.0).all()
     assert (angle[cloud.row >= 16] > 0.0).all()
+
+
+def gridded(small_survey: Any) -> tuple[FloatArray, Any]:
+    """The places of two points on the map, the second 60 m east and 30 m north, and their grid."""
+    two = small_survey.bottom.select(np.arange(2))
+    place = np.array([[0.0, 0.0, -3.0], [60.0, 30.0, -5.0]])
+    two = replace(two, position=place, classification=np.full(2, 40, dtype=np.uint8))
+    return place, grid_elevation(two, small_survey.map_frame, cell_size=10.0)
+
+
+def test_the_first_row_of_a_raster_is_the_northernmost(small_survey: Any) -> None:
+    place, grid = gridded(small_survey)
+    assert np.nanmin(grid.elevation[0]) == place[1, 2]
+    assert np.nanmin(grid.elevation[-1]) == place[0, 2]
+
+
+def test_the_first_column_of_a_raster_is_the_westernmost(small_survey: Any) -> None:
+    place, grid = gridded(small_survey)
+    assert np.nanmin(grid.elevation[:, 0]) == place[0, 2]
+    assert np.nanmin(grid.elevation[:, -1]) == place[1, 2]

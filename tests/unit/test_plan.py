@@ -165,3 +165,12 @@ def test_a_flight_off_its_seabed_is_warned_of() -> None:
     aside = load_scenario("measured-seabed").replace(**{"flight.start_easting_m": 902600.0})
     (fault,) = (line for line in as_json(make_plan(aside))["warnings"] if "refuse" in line)
     assert "outside the seabed" in fault
+
+
+def test_a_sea_of_waves_is_said_to_be_taken_as_level() -> None:
+    swell = [{"height_m": 1.0, "period_s": 8.0, "from_deg": 290.0}]
+    rough = make_plan(scenario(surface__swell=swell))
+    assert as_json(rough)["wave_height_left_out_m"] == pytest.approx(1.0)
+    assert "taken as level: waves of 1.0 m (significant)" in as_text(rough)
+    assert found()["wave_height_left_out_m"] == 0.0
+    assert "taken as level" not in as_text(plan())

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from survey.flight.trajectory import fly_lines, footprint
 from survey.optics.water import PAPER_COEFFICIENTS
+from survey.planning.plan import make_plan
 from survey.scenario import Scenario, ScenarioError, components, load_scenario
 from survey.scenario.gallery import gallery
 from survey.scenario.load import parse_overrides
@@ -45,7 +46,8 @@ def test_every_scenario_is_sound_and_says_what_to_expect(name: str) -> None:
 
 def test_the_gallery_is_complete() -> None:
     names = {"measured-seabed", "sandbar", "wreck", "turned-footprint", "too-deep"}
-    names |= {"rolling-aircraft", "area-survey", "harbor-wreck", "reef-with-swell", "turbid-layer"}
+    names |= {"rolling-aircraft", "area-survey", "harbor-wreck", "reef-with-swell"}
+    names |= {"turbid-layer", "next-generation"}
     assert names | PAPER.keys() <= gallery().keys()
 
 
@@ -163,6 +165,20 @@ def test_turbid_layer_has_its_troughs_in_the_layer_and_its_crests_above_it() -> 
     assert layer.top == 8.5
     assert 0.6 < (bed < -layer.top).mean() < 0.7
     assert components.expected_water(scenario).is_uniform
+
+
+def test_next_generation_is_safe_to_look_up_at_and_denser_than_the_paper_s_camera() -> None:
+    """The Norwegian specification for airborne lidar bathymetry 2025.1 asks for 5 points/m2."""
+    scenario = load_scenario("next-generation")
+    plan = make_plan(scenario)
+    assert plan.eye.binocular_distance < 0.5 * plan.height
+    assert plan.frame_density > 10.0
+    assert plan.density > 25.0
+    assert plan.expectation.run_day.depth > plan.depth[2]
+    assert not plan.bottom.swath.gaps
+    paper = make_plan(load_scenario("paper-p02").replace(**{"flight.frames_per_line": 2}))
+    assert paper.density < 0.5
+    assert scenario.laser.pulse_width_ns < 0.2 * load_scenario("paper-p02").laser.pulse_width_ns
 
 
 @pytest.mark.parametrize(("name", "water"), PAPER.items())

@@ -70,7 +70,7 @@ def test_the_survey_measures_the_level_where_it_expects_a_wrong_one(make: Any) -
     mission = prepare(scenario)
     assert mission.expected_level(0.0) == pytest.approx(1.9)
     assert mission.expected_level(6.0 * HOUR) == pytest.approx(-0.1)
-    assert mission.engine_at(6.0 * HOUR).surface.level == pytest.approx(-0.5)
+    assert mission.sea.at(6.0 * HOUR).level == pytest.approx(-0.5)
     found = fly_frame(mission, mission.frames[0])
     solid = found.bottom.classification == PointClass.BATHYMETRIC
     error = (found.bottom.position[:, 2] - found.bottom.true_elevation)[solid]

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from pyproj import Transformer
+from pyproj.exceptions import CRSError
 
 from survey.flight.files.faults import FlightFileError, content_of
 
@@ -99,7 +100,10 @@ def _on_map(corners: FloatArray, code: int, epsg: int, path: Path) -> FloatArray
         raise FlightFileError(
             path, ["corners are no longitudes and latitudes in degrees. Name their map in crs"]
         )
-    transformer = Transformer.from_crs(source, epsg, always_xy=True)
+    try:
+        transformer = Transformer.from_crs(source, epsg, always_xy=True)
+    except CRSError as error:
+        raise FlightFileError(path, [f"crs: there is no map EPSG:{source}"]) from error
     placed = np.column_stack(transformer.transform(corners[:, 0], corners[:, 1]))
     if not np.isfinite(placed).all():
         raise FlightFileError(path, [f"corners lie outside the map EPSG:{epsg}"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Callable, Iterator
+from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
 
@@ -12,6 +13,9 @@ from numpy.typing import ArrayLike
 
 from survey.errors import UserError
 from survey.optics.phase.function import FloatArray, PhaseFunction
+from terrain.foreign.faults import ForeignFileError, ReaderError
+from terrain.foreign.limits import limits_for_whole
+from terrain.foreign.reading import read_foreign
 
 HEADER = ["angle_deg", "value"]
 LAST_ANGLE_TOLERANCE = 1e-6
@@ -78,18 +82,47 @@ def read_phase_function(path: Path, *, small_angle_slope: float | None = None) -
         When the file cannot be read, or its rows are not a phase function: a line for each fault,
         with file and line.
     """
-    rows, faults = _read_rows(path)
+    try:
+        status = path.stat()
+        table = _table(path, (status.st_mtime_ns, status.st_size), small_angle_slope)
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read: {error.strerror}") from None
+    except ForeignFileError as error:
+        raise UserError(str(error)) from None
+    return tabled_phase_function(name=path.name, small_angle_slope=small_angle_slope, **table)
+
+
+@lru_cache(maxsize=4)
+def _table(
+    path: Path, stamp: tuple[int, int], small_angle_slope: float | None
+) -> dict[str, FloatArray]:
+    """Read a table once, in a child; another time or size of the file is another file."""
+    return read_foreign(
+        f"{__name__}:table_columns",
+        path,
+        limits=limits_for_whole(path),
+        small_angle_slope=small_angle_slope,
+    )
+
+
+def table_columns(path: str, *, small_angle_slope: float | None) -> dict[str, FloatArray]:
+    """Return ``angle`` (n,) [rad] and ``value`` (n,) of a table, in the child.
+
+    Raises
+    ------
+    ReaderError
+        With every fault of the file.
+    """
+    rows, faults = _read_rows(Path(path))
     faults += _row_faults(rows)
+    angle, value = np.radians([row[1] for row in rows]), np.array([row[2] for row in rows])
     if not faults:
-        angle, value = np.radians([row[1] for row in rows]), np.array([row[2] for row in rows])
         angle[-1] = np.pi
         slope = _slope(angle, value) if small_angle_slope is None else small_angle_slope
         faults = [(rows[0][0], fault) for fault in _slope_faults(slope)]
     if faults:
-        raise UserError("\n".join(f"{path}: line {line}: {text}" for line, text in sorted(faults)))
-    return tabled_phase_function(
-        name=path.name, angle=angle, value=value, small_angle_slope=small_angle_slope
-    )
+        raise ReaderError(*(f"line {line}: {text}" for line, text in sorted(faults)))
+    return {"angle": angle, "value": value}
 
 
 def _interpolation(
@@ -169,9 +202,9 @@ def _cells(path: Path) -> Iterator[tuple[int, list[str]]]:
         with path.open(encoding="utf-8-sig", newline="") as file:
             lines = [line.split("#", 1)[0] for line in file]
     except OSError as error:
-        raise UserError(f"{path}: cannot be read: {error.strerror}") from None
+        raise ReaderError(f"cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
-        raise UserError(f"{path}: is not text. Give a CSV file in UTF-8") from None
+        raise ReaderError("is not text. Give a CSV file in UTF-8") from None
     for number, line in enumerate(lines, start=1):
         if line.strip():
             yield number, [cell.strip() for cell in next(csv.reader([line.strip()]))]

@@ -1,14 +1,18 @@
-"""Trajectories of every known format, read in a child process."""
+"""Trajectories and areas of every known format, read in a child process."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pyproj import CRS
 
+from survey.flight.files import geojson_file
 from survey.flight.files.cblue_file import read_cblue
 from survey.flight.files.csv_file import read_csv_track
 from survey.flight.files.faults import FlightFileError
@@ -17,6 +21,8 @@ from survey.flight.track import Track
 from terrain.foreign.faults import ForeignFileError, ReaderError
 from terrain.foreign.limits import limits_for_whole
 from terrain.foreign.reading import read_foreign
+
+FloatArray = NDArray[np.float64]
 
 
 def read_track(path: Path, *, kind: str, epsg: int, prefix: str = "") -> Track:
@@ -39,24 +45,27 @@ def read_track(path: Path, *, kind: str, epsg: int, prefix: str = "") -> Track:
     FlightFileError
         With every fault of the file.
     """
+    return Track(**_from_child("track_columns", path, kind=kind, epsg=epsg, prefix=prefix))
+
+
+def read_area(path: Path, *, epsg: int) -> FloatArray:
+    """Return the corners (n, 2) of the polygon in a GeoJSON file on a map [m].
+
+    Raises as `read_track`.
+    """
+    return _from_child("area_corners", path, epsg=epsg)["corners"]
+
+
+def _from_child(reader: str, path: Path, *, epsg: int, **arguments: Any) -> dict[str, FloatArray]:
     CRS.from_epsg(epsg)
+    limits = limits_for_whole(path)
     try:
-        columns = read_foreign(
-            "survey.flight.files.any_track:track_columns",
-            path,
-            limits=limits_for_whole(path),
-            kind=kind,
-            epsg=epsg,
-            prefix=prefix,
-        )
+        return read_foreign(f"{__name__}:{reader}", path, limits=limits, epsg=epsg, **arguments)
     except ForeignFileError as error:
         raise FlightFileError(path, list(error.faults)) from None
-    return Track(**columns)
 
 
-def track_columns(
-    path: str, *, kind: str, epsg: int, prefix: str
-) -> dict[str, NDArray[np.float64]]:
+def track_columns(path: str, *, kind: str, epsg: int, prefix: str) -> dict[str, FloatArray]:
     """Return the columns of a track, in the child.
 
     Raises
@@ -64,10 +73,22 @@ def track_columns(
     ReaderError
         With every fault of the file.
     """
-    try:
+    with _told_to_the_parent():
         if kind == "csv":
             return asdict(read_csv_track(Path(path), epsg=epsg, prefix=prefix))
         reader = {"cblue": read_cblue, "sbet": read_sbet}[kind]
         return asdict(reader(Path(path), epsg=epsg))
+
+
+def area_corners(path: str, *, epsg: int) -> dict[str, FloatArray]:
+    """Return the corners of an area, in the child; raises as `track_columns`."""
+    with _told_to_the_parent():
+        return {"corners": geojson_file.read_area(Path(path), epsg=epsg)}
+
+
+@contextmanager
+def _told_to_the_parent() -> Iterator[None]:
+    try:
+        yield
     except FlightFileError as error:
         raise ReaderError(*error.faults) from error

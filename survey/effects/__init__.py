@@ -1,0 +1,1 @@
+"""What each effect of a scenario costs: the mission flown anew with one of them left out."""
