@@ -60,7 +60,8 @@ def test_high_water_is_a_sea_that_stands_higher(make: Any) -> None:
     assert np.median(tidal.surface.position[:, 2]) == pytest.approx(1.5, abs=0.05)
     found = tidal.bottom.classification == PointClass.BATHYMETRIC
     assert found.mean() > 0.9
-    assert tidal.bottom.depth[found] == pytest.approx(higher.bottom.depth[found], abs=0.05)
+    apart = np.abs(tidal.bottom.depth - higher.bottom.depth)[found]
+    assert np.median(apart) < 0.05  # gates differ, and with them the light paths that are drawn
     error = (tidal.bottom.position[:, 2] - tidal.bottom.true_elevation)[found]
     assert abs(np.median(error)) < 0.1
 
