@@ -67,7 +67,8 @@ LEDGER_NAMES = (
 class Touch(NamedTuple):
     """Where a walk met the bottom; ``face`` is -1 when it did not.
 
-    ``absorbed`` is the optical depth of absorption on its ``path`` [m].
+    ``absorbed`` is the optical depth of absorption on its ``path`` [m]; ``weight`` is without it,
+    and ``kept`` is what it leaves of that.
     """
 
     face: int
@@ -80,6 +81,7 @@ class Touch(NamedTuple):
     path: float
     absorbed: float
     weight: float
+    kept: float
 
 
 class Address(NamedTuple):
@@ -120,12 +122,11 @@ def walk_back(
     The weight does not hold the absorption, which is told beside. Legs are noted if ``noting``.
     """
     ledger, sea = tally.ledger, scene.sea
-    _, x, y, z, dx, dy, dz, path, absorbed, weight = start
+    _, x, y, z, dx, dy, dz, path, absorbed, weight, unabsorbed = start
     frame = frame_around(dx, dy, dz, method.circle, state)
     k, turning, fate, entered = 0, False, LATE, weight
     turns = scattered = 0.0
     track, optical = way.track, way.optical
-    unabsorbed = weight * math.exp(-absorbed)
     while True:
         depth, ox, oy, oz = sea.level - z, dx, dy, dz
         row = tracks.legs[which, track, k]
@@ -154,7 +155,7 @@ def walk_back(
         if face >= 0:
             kept = weight * math.exp(-absorbed)
             ledger[ABSORBED] += unabsorbed - kept
-            return Touch(face, x, y, z, dx, dy, dz, path, absorbed, weight)
+            return Touch(face, x, y, z, dx, dy, dz, path, absorbed, weight, kept)
         if path >= limit:
             break
         if not (
@@ -186,7 +187,7 @@ def walk_back(
                 ledger[ABSORBED] += unabsorbed - kept
                 if uniform(state) >= ROULETTE_SURVIVAL:
                     ledger[ROULETTE] += kept
-                    return Touch(-1, x, y, z, dx, dy, dz, path, absorbed, 0.0)
+                    return Touch(-1, x, y, z, dx, dy, dz, path, absorbed, 0.0, 0.0)
                 weight /= ROULETTE_SURVIVAL
                 unabsorbed = kept / ROULETTE_SURVIVAL
                 ledger[ROULETTE] += kept - unabsorbed
@@ -196,7 +197,7 @@ def walk_back(
     kept = weight * math.exp(-absorbed)
     ledger[ABSORBED] += unabsorbed - kept
     ledger[fate] += kept
-    return Touch(-1, x, y, z, dx, dy, dz, path, absorbed, 0.0)
+    return Touch(-1, x, y, z, dx, dy, dz, path, absorbed, 0.0, 0.0)
 
 
 @leaf_kernel
@@ -255,7 +256,7 @@ def see_bottom(
         if touch.face < 0:
             return
         touches += 1
-        kept = touch.weight * math.exp(-touch.absorbed)
+        kept = touch.kept
         tally.ledger[SEABED] += kept * (1.0 - rho)
         kept *= rho
         if uniform(state) >= BOUNCE_CHANCE:
@@ -265,7 +266,7 @@ def see_bottom(
         dx, dy, dz = lambert_direction(nx, ny, nz, state)
         start = Touch(
             -1, x + nx * LIFT, y + ny * LIFT, z + nz * LIFT, dx, dy, dz,
-            touch.path, touch.absorbed, touch.weight * rho / BOUNCE_CHANCE,
+            touch.path, touch.absorbed, touch.weight * rho / BOUNCE_CHANCE, kept / BOUNCE_CHANCE,
         )  # fmt: skip
         back = course(tracks, which + 1, int(uniform(state) * tracks.legs.shape[1]), 1.0)
         down = chosen(tracks, which, uniform(state))
@@ -318,7 +319,7 @@ def see(
     if face >= 0:
         x, y, z = x + dx * to_land, y + dy * to_land, z + dz * to_land
         sight = Sight(pixel, batch, 0.0, importance)
-        touch = Touch(face, x, y, z, dx, dy, dz, to_land, 0.0, 1.0)
+        touch = Touch(face, x, y, z, dx, dy, dz, to_land, 0.0, 1.0, 1.0)
         see_land(scene, optics, method, tally, sight, touch)
         ledger[REFLECTED] += 1.0
         return
@@ -341,7 +342,7 @@ def see(
         ledger[ESCAPED] += weight
         return
     sight = Sight(pixel, batch, length / speed_of_light, importance * weight * gain_of(layers))
-    start = Touch(-1, x, y, level, dx, dy, dz, 0.0, 0.0, weight)
+    start = Touch(-1, x, y, level, dx, dy, dz, 0.0, 0.0, weight, weight)
     see_bottom(
         scene, layers, optics, method, tracks, tally, sight, start, way_back, way_down, state
     )
