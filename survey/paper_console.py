@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 from survey.paper import instrument
 from survey.paper.reproduce import STEPS
@@ -18,25 +18,25 @@ WIDTH = 100
 
 
 @contextmanager
-def telling(stream: TextIO, *, quiet: bool) -> Iterator[Callable[[str], None]]:
+def telling(stream: TextIO, *, quiet: bool, steps: int = STEPS) -> Iterator[Callable[[str], None]]:
     """Give what takes a line for each step: nobody when quiet, a bar on a terminal, plain lines."""
     if quiet:
         yield lambda step: None
     elif stream.isatty():
-        with _bar(stream) as tell:
+        with _bar(stream, steps) as tell:
             yield tell
     else:
         yield lambda step: print(step, file=stream, flush=True)
 
 
 @contextmanager
-def _bar(stream: TextIO) -> Iterator[Callable[[str], None]]:
+def _bar(stream: TextIO, steps: int) -> Iterator[Callable[[str], None]]:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(file=stream), transient=True) as bar:
-        task = bar.add_task("", total=STEPS)
+        task = bar.add_task("", total=steps)
         begun = False
 
         def tell(step: str) -> None:
@@ -66,6 +66,33 @@ def say(findings: Findings, stream: TextIO) -> None:
     console.print(" ".join(findings.verdict.sentences()))
     console.print()
     console.print(" ".join(sentences(findings.sights)))
+
+
+def say_flights(flown: Mapping[str, Mapping[str, Any]], stream: TextIO) -> None:
+    """Print how deep the missions reached, beside what was expected; depths also as c z, K_d z."""
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(title="Missions flown whole: depth to which the bottom is found [m (c z, K_d z)]")
+    for heading in ("", "bed", "ratio 10", "threshold", "reached", "by half", "found", "false"):
+        table.add_column(heading, justify="left" if not heading else "right")
+    for name, row in flown.items():
+        bed = {row["true_depth_least_m"], row["true_depth_greatest_m"]}
+        names = ("snr_depth", "run_depth", "stitched_depth", "half_stitched_depth")
+        table.add_row(
+            name,
+            " to ".join(f"{depth:.0f}" for depth in sorted(bed)),
+            *(_depth(row, depth) for depth in names),
+            f"{100.0 * row['found_fraction']:.1f} %",
+            f"{100.0 * row['false_bottom_fraction']:.2f} %",
+        )
+    Console(file=stream, width=None if stream.isatty() else WIDTH, highlight=False).print(table)
+
+
+def _depth(row: Mapping[str, Any], name: str) -> str:
+    if row[f"{name}_m"] is None:
+        return "none"
+    return f"{row[f'{name}_m']:.1f} ({row[f'{name}_c_z']:.1f}, {row[f'{name}_k_d_z']:.1f})"
 
 
 def _table(findings: Findings) -> Table:

@@ -49,7 +49,7 @@ class WaterClarity:
 
 
 def optical_depths(metrics: Mapping[str, Any], clarity: WaterClarity) -> dict[str, float | None]:
-    """Return c, K_d and, for each depth of `pixel_metrics`, c z and K_d z; None where it is None.
+    """Return c, K_d and, for each value named ``*_depth_m``, c z and K_d z; None where it is None.
 
     Examples
     --------
@@ -60,7 +60,7 @@ def optical_depths(metrics: Mapping[str, Any], clarity: WaterClarity) -> dict[st
     """
     c, kd = clarity.attenuation, clarity.diffuse_attenuation
     values: dict[str, float | None] = {"attenuation_per_m": c, "diffuse_attenuation_per_m": kd}
-    for name in DEPTHS:
+    for name in (key.removesuffix("_m") for key in metrics if key.endswith("_depth_m")):
         depth = metrics[f"{name}_m"]
         values[f"{name}_c_z"] = None if depth is None else c * depth
         values[f"{name}_k_d_z"] = None if depth is None else kd * depth
