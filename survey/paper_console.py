@@ -15,6 +15,18 @@ if TYPE_CHECKING:
     from survey.paper.reproduce import Findings
 
 WIDTH = 100
+DEPTHS = {
+    "snr_depth_m": "SNR 10",
+    "run_depth_m": "threshold",
+    "stitched_depth_m": "reached",
+    "stitched_depth_c_z": "c z",
+    "stitched_depth_k_d_z": "K_d z",
+}
+SHARES = {
+    "found_fraction": "found",
+    "false_bottom_fraction": "false",
+    "hidden_false_fraction": "if hidden",
+}
 
 
 @contextmanager
@@ -69,36 +81,43 @@ def say(findings: Findings, stream: TextIO) -> None:
 
 
 def say_flights(flown: Mapping[str, Mapping[str, Any]], stream: TextIO) -> None:
-    """Print how deep the missions reached, beside what was expected; depths also as c z, K_d z."""
+    """Print how deep the missions reached, beside what was expected."""
     from rich.console import Console
     from rich.table import Table
 
-    table = Table(title="Missions flown whole: depth to which the bottom is found [m (c z, K_d z)]")
-    for heading in ("", "bed", "ratio 10", "threshold", "reached", "by half", "found", "false"):
-        table.add_column(heading, justify="left" if not heading else "right")
+    table = Table(title="Depth to which missions flown whole find the bottom, in metres")
+    table.add_column("", no_wrap=True)
+    for heading in (*DEPTHS.values(), *SHARES.values()):
+        table.add_column(heading, justify="right")
     for name, row in flown.items():
-        bed = {row["true_depth_least_m"], row["true_depth_greatest_m"]}
-        names = ("snr_depth", "run_depth", "stitched_depth", "half_stitched_depth")
         table.add_row(
             name,
-            " to ".join(f"{depth:.0f}" for depth in sorted(bed)),
-            *(_depth(row, depth) for depth in names),
-            f"{100.0 * row['found_fraction']:.1f} %",
-            f"{100.0 * row['false_bottom_fraction']:.2f} %",
+            *(_number(row[depth]) for depth in DEPTHS),
+            *(_share(row[share]) for share in SHARES),
         )
-    Console(file=stream, width=None if stream.isatty() else WIDTH, highlight=False).print(table)
+    console = Console(file=stream, width=None if stream.isatty() else WIDTH, highlight=False)
+    console.print(table)
+    console.print(
+        "SNR 10: where the flooding matrix's ratio for the bottom falls to 10. Threshold: to where "
+        "nine flashes in ten should fire. False: more than 1 m off; if hidden: the same where the "
+        "true bottom fires in less than 1 % of flashes, so that noise alone makes bottoms."
+    )
 
 
-def _depth(row: Mapping[str, Any], name: str) -> str:
-    if row[f"{name}_m"] is None:
-        return "none"
-    return f"{row[f'{name}_m']:.1f} ({row[f'{name}_c_z']:.1f}, {row[f'{name}_k_d_z']:.1f})"
+def _number(value: float | None) -> str:
+    return "none" if value is None else f"{value:.1f}"
+
+
+def _share(value: float | None) -> str:
+    return "-" if value is None else f"{100.0 * value:.2f} %"
 
 
 def _table(findings: Findings) -> Table:
     from rich.table import Table
 
-    table = Table(title="Depth where the water column's signal-to-noise ratio falls to 10 [m]")
+    table = Table(
+        title="Depth where the water column's signal-to-noise ratio falls to 10, in metres"
+    )
     for heading in ("", "published", "isolated", "off", "flood, fitted anew", "off"):
         table.add_column(heading, justify="left" if not heading else "right")
     table.add_column("flood, same receiver", justify="right")

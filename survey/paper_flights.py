@@ -38,6 +38,7 @@ SEAS: Mapping[str, dict[str, Any]] = {
         }
     },
 }
+HIDDEN = 0.01
 DIGITS = 4
 
 
@@ -133,6 +134,8 @@ def judge(
     true_depth_least_m, _greatest_m       of the bottom under the pixels
     found_fraction                        share of pixels that found the true bottom
     false_bottom_fraction                 share that reported one more than 1 m off
+    hidden_false_fraction                 the same of the pixels whose true echo fires in less than
+                                          1 % of flashes; None where there are none
     false_alarm_rate                      highest share that noise alone is allowed
     ====================================  ======================================================
 
@@ -149,6 +152,9 @@ def judge(
     cloud = stitched([r.bottom for r in results], cell_size=scenario.processing.thinning_m)
     outcome = np.concatenate([r.record.outcome.ravel() for r in results])
     depth = np.concatenate([r.record.true_depth.ravel() for r in results])
+    fires = np.concatenate([r.record.detection_probability.ravel() for r in results])
+    false = outcome == Outcome.FALSE_BOTTOM
+    hidden = fires < HIDDEN
     expected = expectation(
         scenario,
         seabed=components.seabed(scenario),
@@ -171,7 +177,8 @@ def judge(
         "true_depth_least_m": float(depth.min()),
         "true_depth_greatest_m": float(depth.max()),
         "found_fraction": float((outcome == Outcome.FOUND).mean()),
-        "false_bottom_fraction": float((outcome == Outcome.FALSE_BOTTOM).mean()),
+        "false_bottom_fraction": float(false.mean()),
+        "hidden_false_fraction": float(false[hidden].mean()) if hidden.any() else None,
         "false_alarm_rate": scenario.processing.false_alarm_rate,
     }
     return {name: None if value is None else round(value, DIGITS) for name, value in values.items()}
