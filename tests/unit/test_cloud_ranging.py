@@ -100,7 +100,7 @@ def test_thresholds_are_raised_by_the_monte_carlo_error_of_model_and_flash() -> 
 
 
 def test_a_flash_that_errs_more_than_the_model_raises_its_thresholds() -> None:
-    """By 4.5 deviations of what 11 bins of twice the error have more, the model's share included."""
+    """By 4.5 deviations of what 11 bins of twice the error have more, the model's share too."""
     light = np.full((9, 9, BINS), 20.0)
     noise = noise_model(light, variance=4.0)
     assert np.array_equal(noise.of_flash(light * 0.2).bottom_threshold, noise.bottom_threshold)
