@@ -256,6 +256,10 @@ def paper(
     ] = 1.0,
     seed: Annotated[int, typer.Option(min=0, max=LARGEST_SEED)] = 1,
     threads: Annotated[int, typer.Option(min=0, help="0 is one for each core.")] = 0,
+    flights: Annotated[
+        bool,
+        typer.Option("--flights", help="Also fly its missions into DIR/flights: 15 minutes."),
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, not a table.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing but errors.")] = False,
 ) -> None:
@@ -271,12 +275,23 @@ def paper(
 
     with console.telling(sys.stderr if as_json else sys.stdout, quiet=quiet) as tell:
         findings = reproduce(work=work, seed=seed, threads=threads, tell=tell)
-    result = json_bytes(plain(findings, work=work, seed=seed))
-    write_results(output, pictures(findings) | {"paper.json": result})
-    if as_json:
-        typer.echo(result.decode(), nl=False)
-    elif not quiet:
+    result = plain(findings, work=work, seed=seed)
+    write_results(output, pictures(findings) | {"paper.json": json_bytes(result)})
+    if not (as_json or quiet):
         console.say(findings, sys.stdout)
+    if flights:
+        from survey.paper_flights import FLIGHTS, fly_all, limits_of
+        from survey.products.json_file import write_json
+
+        stream = sys.stderr if as_json else sys.stdout
+        with console.telling(stream, quiet=quiet, steps=len(FLIGHTS)) as tell:
+            flown = fly_all(output / "flights", limits=limits_of(findings), tell=tell)
+        result["flights"] = flown
+        write_json(output / "paper.json", result)
+        if not (as_json or quiet):
+            console.say_flights(flown, sys.stdout)
+    if as_json:
+        typer.echo(json_bytes(result).decode(), nl=False)
 
 
 @app.command()

@@ -43,11 +43,8 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
         refractive_index=engine.water.refractive_index,
         wave_height=surface.wave_height,
     )
-    bottom = last_echo(
-        counts=readings.counts,
-        noise=noise.of_flash(waveforms.variance[:2].sum(axis=0)),
-        surface_time=line.surface_time,
-    )
+    in_doubt = noise.of_flash(waveforms.variance[:2].sum(axis=0))
+    bottom = last_echo(counts=readings.counts, noise=in_doubt, surface_time=line.surface_time)
 
     targets = true_targets(
         seabed=mission.seabed,
@@ -74,7 +71,7 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
         bottom=bottom,
         points=on_bottom,
         targets=targets,
-        noise=noise,
+        noise=in_doubt,
         group_index=engine.water.group_index,
     )
     raw = mission.raw_of(readings)

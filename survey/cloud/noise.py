@@ -60,6 +60,12 @@ class NoiseModel:
         Readings of the gate that is centred on the bin, over water without a bottom.
     surface_threshold, bottom_threshold : array
         n_L of that gate.
+    allowance : array
+        By how much ``bottom_threshold`` is raised for the Monte Carlo error [counts].
+    deviate : float
+        That over the error of a gate [1].
+    model_flashes : int
+        How many flashes the model is the mean of.
     doubt : array or float
         What a gate must hold above ``bottomless`` for the Monte Carlo error of the flash itself,
         see `of_flash`.
@@ -86,6 +92,9 @@ class NoiseModel:
     pulse: FloatArray
     bin_start: float
     bin_width: float
+    allowance: FloatArray
+    deviate: float
+    model_flashes: int
     doubt: FloatArray | float = 0.0
     surface_walk: FloatArray | float = 0.0
 
@@ -116,11 +125,11 @@ class NoiseModel:
         even_light = np.full(bottomless_light.shape, steady_light)
         steady = detector.scatter(even_light, detector.mean(even_light))
         bottomless = detector.scatter(bottomless_light, detector.mean(bottomless_light))
-        smooth = uniform_filter(flash_variance, size=(NEIGHBOURS, NEIGHBOURS, 1))
-        error = np.sqrt(np.maximum(smooth, 0.0) * (1.0 + 1.0 / model_flashes))
+        error = _common_error(flash_variance, model_flashes)
         uncertain = _reading_error(detector, bottomless_light, error, bottomless.mean)
+        deviate = float(norm.isf(per_gate))
+        allowance = deviate * gate_sums(uncertain, gate_bins)
         gate = gate_scatter(bottomless, gate_sums(bottomless.mean, gate_bins), gate_bins)
-        raised = gate.mean + norm.isf(per_gate) * gate_sums(uncertain, gate_bins)
         strongest = maximum_filter1d(steady.mean, gate_bins, axis=-1) * gate_bins
         return cls(
             detector=detector,
@@ -130,15 +139,21 @@ class NoiseModel:
             bottomless=bottomless.mean,
             gate=gate,
             surface_threshold=gate_scatter(steady, strongest, gate_bins).threshold(per_gate),
-            bottom_threshold=replace(gate, mean=raised).threshold(per_gate),
+            bottom_threshold=replace(gate, mean=gate.mean + allowance).threshold(per_gate),
             gate_bins=gate_bins,
             pulse=pulse,
             bin_start=bin_start,
             bin_width=bin_width,
+            allowance=allowance,
+            deviate=deviate,
+            model_flashes=model_flashes,
         )
 
     def of_flash(self, variance: FloatArray) -> NoiseModel:
         """Return the model with the doubt of a flash whose light without a bottom errs so.
+
+        Over a shallow bed the same walks tell the column less well than over the deep water of
+        the model: where the flash errs more, averaged over the same pixels, thresholds rise.
 
         One path of light, rare and bright, stands out like a bottom, beyond what the mean error of
         many pixels lets expect. The error of its own pixel and bins is then as large as the light:
@@ -149,9 +164,26 @@ class NoiseModel:
         variance : array (rows, columns, bins)
             Squared Monte Carlo error of the flash's photo-electrons, those of the bottom left out.
         """
-        error = np.sqrt(variance, dtype=np.float64)
+        allowance = self.deviate * self._gate_error(_common_error(variance, self.model_flashes))
+        own = self._gate_error(np.sqrt(variance, dtype=np.float64))
+        return replace(
+            self,
+            bottom_threshold=self.bottom_threshold + np.maximum(allowance - self.allowance, 0.0),
+            doubt=DOUBTFUL * own,
+        )
+
+    def _gate_error(self, error: FloatArray) -> FloatArray:
+        """Return by how much a gate's reading may be off when its light errs so in every bin."""
         uncertain = _reading_error(self.detector, self.bottomless_light, error, self.bottomless)
-        return replace(self, doubt=DOUBTFUL * gate_sums(uncertain, self.gate_bins))
+        return gate_sums(uncertain, self.gate_bins)
+
+
+def _common_error(variance: FloatArray, model_flashes: int) -> FloatArray:
+    """Return the error of flash and model together, averaged over 9 x 9 pixels."""
+    smooth = uniform_filter(
+        np.asarray(variance, dtype=np.float64), size=(NEIGHBOURS, NEIGHBOURS, 1)
+    )
+    return np.sqrt(np.maximum(smooth, 0.0) * (1.0 + 1.0 / model_flashes))
 
 
 def gate_sums(counts: Readout, gate_bins: int) -> FloatArray:

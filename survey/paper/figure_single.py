@@ -26,7 +26,7 @@ LOOKS = {
     EQUAL_AREA: ("single element, equal energy per lit area", "#cc79a7"),
     MATRIX_BUILDABLE: ("matrix of pixels that can be built", "#009e73"),
 }
-SNR_RANGE = (1e-1, 1e11)
+SNR_RANGE = (1e-1, 1e12)
 PAPER_LIMIT = (3.5, 4.0)  # where [Lisenko2017] says that single-element lidars stop [1]
 DEEPEST = {"P02": 13.5, "P05": 21.0, "P07": 40.0}
 

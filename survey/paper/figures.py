@@ -106,8 +106,18 @@ def _mark_levels(axes: Axes, receiver: PaperReceiver) -> None:
     """Draw the power of the sun and of a photo-electron in the measuring time."""
     per_watt = float(receiver.signal_rate(np.array(1.0))) / receiver.aperture_area
     levels = (
-        (receiver.background_rate(instrument.SUNS["day"]), "sun, 50 W/(m² µm sr)", True, True),
-        (receiver.background_rate(instrument.SUNS["night"]), "sun, 0.001", False, False),
+        (
+            receiver.background_rate(instrument.SUNS["day"]),
+            "by day: $L_b$ = 50 W/(m² µm sr)",
+            True,
+            True,
+        ),
+        (
+            receiver.background_rate(instrument.SUNS["night"]),
+            "by night: $L_b$ = 0.001 W/(m² µm sr)",
+            False,
+            False,
+        ),
         (1.0 / instrument.MEASURING_TIME, "1 photo-electron in 10 ns", False, True),
     )
     for rate, words, to_right, above in levels:
@@ -124,6 +134,9 @@ def _snr_panel(axes: Axes, found: Curves) -> None:
         settled = _settled(snr, found.snr_error[brightness])
         axes.plot(found.depth, settled, color=colour, lw=1.4, label=f"{brightness:g}")
     axes.axhline(instrument.REQUIRED_SNR, color=LEVEL, ls="--", lw=1.0)
+    axes.text(
+        -1.5, 0.7 * instrument.REQUIRED_SNR, "required: 10", color=LEVEL, va="top", fontsize=8
+    )
     axes.set_yscale("log")
     axes.set_ylim(*SNR_RANGE)
     axes.set_ylabel("signal-to-noise ratio, eq. (10), of powers [1]")

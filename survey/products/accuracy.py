@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.points import PixelRecord, PointClass, PointCloud
+from survey.cloud.truth import FALSE_BOTTOM_ERROR
 from survey.optics.water import WaterColumn
 from survey.products.cells import CellGrid, inside_ring
-from survey.products.pixels import pixel_metrics
+from survey.products.pixels import DETECTABLE, HALF, deepest, pixel_metrics
 from survey.products.reach import optical_depths
 
 FloatArray = NDArray[np.float64]
 ElevationAt = Callable[[FloatArray, FloatArray], FloatArray]
 BOTTOM_CLASSES = (PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT)
-FALSE_BOTTOM_ERROR = 1.0
 DECIMALS = 6
 
 
@@ -52,7 +52,8 @@ def metrics(
     density_per_m2                      bottom points over the area of these wet cells
     ==================================  ========================================================
 
-    followed by what `pixel_metrics` counts and what `optical_depths` makes of its depths.
+    followed by what `pixel_metrics` counts, by `stitched_depths`, and by what `optical_depths`
+    makes of all depths.
 
     Parameters
     ----------
@@ -79,7 +80,7 @@ def metrics(
     """
     solid = bottom.select(np.isin(bottom.classification, BOTTOM_CLASSES))
     ground = bottom.select(bottom.classification == PointClass.GROUND)
-    pixels = pixel_metrics(records)
+    pixels = pixel_metrics(records) | stitched_depths(bottom, water_level=water_level)
     values = {
         "frames": len(records),
         "points_bottom": len(solid),
@@ -95,6 +96,30 @@ def metrics(
         **optical_depths(pixels, water),
     }
     return {name: _rounded(value) for name, value in values.items()}
+
+
+def stitched_depths(bottom: PointCloud, *, water_level: float) -> dict[str, float | None]:
+    """Return how deep a stitched cloud holds the true bottom.
+
+    ``stitched_depth_m`` is the deep edge of the deepest 0.5 m bin of true depth, or the deepest
+    place, where nine points in ten are bottom points within 1 m of the true seabed;
+    ``half_stitched_depth_m`` where half of them are. None where that is nowhere so.
+
+    Parameters
+    ----------
+    bottom : PointCloud
+        With its points where no bottom was found.
+    water_level : float
+        [m].
+    """
+    depth = water_level - bottom.truth[:, 2]
+    right = np.isin(bottom.classification, BOTTOM_CLASSES)
+    right &= np.abs(bottom.position[:, 2] - bottom.true_elevation) <= FALSE_BOTTOM_ERROR
+    right, depth = right[depth > 0.0], depth[depth > 0.0]
+    return {
+        "stitched_depth_m": deepest(depth, lambda here: right[here].mean() >= DETECTABLE),
+        "half_stitched_depth_m": deepest(depth, lambda here: right[here].mean() >= HALF),
+    }
 
 
 def elevation_errors(cloud: PointCloud) -> FloatArray:

@@ -29,9 +29,7 @@ def grid_surface(grid: ElevationGrid, map_frame: MapFrame) -> tuple[FloatArray, 
         If no three neighbouring cells are filled.
     """
     filled = np.isfinite(grid.elevation)
-    number = np.where(filled, np.cumsum(filled).reshape(filled.shape) - 1, -1)
-    corners = [number[1:, :-1], number[1:, 1:], number[:-1, 1:], number[:-1, :-1]]
-    square = np.stack(corners, axis=-1).reshape(-1, 4)
+    square = _squares(filled)
     known = (square >= 0).sum(axis=1)
     whole = square[known == 4]
     three = square[known == 3]
@@ -45,6 +43,18 @@ def grid_surface(grid: ElevationGrid, map_frame: MapFrame) -> tuple[FloatArray, 
     centres = grid.cells.centres()[filled]
     on_map = np.column_stack([centres, grid.elevation[filled]])
     return map_frame.to_local(on_map), faces
+
+
+def has_triangles(grid: ElevationGrid) -> bool:
+    """Tell whether any three neighbouring cells are filled."""
+    return bool(((_squares(np.isfinite(grid.elevation)) >= 0).sum(axis=1) >= 3).any())
+
+
+def _squares(filled: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Return each four neighbouring cells by their place among the filled ones, -1 if empty."""
+    number = np.where(filled, np.cumsum(filled).reshape(filled.shape) - 1, -1)
+    corners = [number[1:, :-1], number[1:, 1:], number[:-1, 1:], number[:-1, :-1]]
+    return np.stack(corners, axis=-1).reshape(-1, 4)
 
 
 def write_bathymetry_glb(

@@ -34,8 +34,9 @@ def pixel_metrics(records: Sequence[PixelRecord]) -> dict[str, Any]:
     monte_carlo_relative_error              median over wet pixels with a bottom echo
     found_fraction                          share of wet pixels with outcome FOUND
     found_fraction_where_detectable         the same where detection_probability >= 0.9
-    detection_depth_m                       deep edge of the deepest 0.5 m bin of true depth
-                                            whose median detection_probability is >= 0.9
+    detection_depth_m                       deep edge of the deepest 0.5 m bin of true depth, or
+                                            the deepest pixel, whose median
+                                            detection_probability is >= 0.9
     found_fraction_above_detection_depth    share of FOUND in all wet pixels down to there
     found_depth_m                           the same edge of the deepest such bin that has 0.9 of
                                             its pixels FOUND
@@ -47,7 +48,7 @@ def pixel_metrics(records: Sequence[PixelRecord]) -> dict[str, Any]:
     probability = _wet_column(records, "detection_probability")
     error = _wet_column(records, "monte_carlo_relative_error")
     error = error[np.isfinite(error) & (_wet_column(records, "bottom_counts") > 0.0)]
-    limit = _deepest(depth, lambda here: np.median(probability[here]) >= DETECTABLE)
+    limit = deepest(depth, lambda here: np.median(probability[here]) >= DETECTABLE)
     found = outcome == Outcome.FOUND
     return {
         "pixels_wet": int(depth.size),
@@ -63,8 +64,8 @@ def pixel_metrics(records: Sequence[PixelRecord]) -> dict[str, Any]:
         "found_fraction_above_detection_depth": None
         if limit is None
         else _share(found[depth <= limit]),
-        "found_depth_m": _deepest(depth, lambda here: found[here].mean() >= DETECTABLE),
-        "half_found_depth_m": _deepest(depth, lambda here: found[here].mean() >= HALF),
+        "found_depth_m": deepest(depth, lambda here: found[here].mean() >= DETECTABLE),
+        "half_found_depth_m": deepest(depth, lambda here: found[here].mean() >= HALF),
     }
 
 
@@ -104,10 +105,24 @@ def _share(which: NDArray[np.bool_]) -> float | None:
     return float(which.mean()) if which.size else None
 
 
-def _deepest(depth: NDArray[Any], good: Callable[[NDArray[np.bool_]], Any]) -> float | None:
-    """Return the deep edge of the deepest 0.5 m bin that is good, told by a mask of its pixels."""
+def deepest(depth: NDArray[Any], good: Callable[[NDArray[np.bool_]], Any]) -> float | None:
+    """Return how deep the deepest good bin of depth reaches [m]; None where none is good.
+
+    Parameters
+    ----------
+    depth : array (n,)
+        True depths [m], sorted into bins of 0.5 m.
+    good : callable
+        Tells by the mask of a bin's members whether the bin is good.
+
+    Examples
+    --------
+    >>> found = np.array([True, True, False, True])
+    >>> deepest(np.array([1.1, 1.2, 1.6, 1.3]), lambda here: found[here].mean() > 0.5)
+    1.5
+    """
     bins = np.floor(depth / DEPTH_BIN).astype(np.intp)
     for number in np.unique(bins)[::-1]:
         if good(bins == number):
-            return float((number + 1) * DEPTH_BIN)
+            return float(min((number + 1) * DEPTH_BIN, depth.max()))
     return None

@@ -8,11 +8,9 @@ from typing import Any
 from survey.optics.water import WaterColumn
 from survey.optics.water.apparent import diffuse_attenuation
 
-DEPTHS = ("found_depth", "half_found_depth", "detection_depth")
-
 
 def optical_depths(metrics: Mapping[str, Any], water: WaterColumn) -> dict[str, float | None]:
-    """Return c z and K_d z for each depth of `pixel_metrics`, and c and K_d under the surface.
+    """Return c z and K_d z for each value named ``*_depth_m``, and c and K_d under the surface.
 
     c z and K_d z are integrals over the water's layers, None where the depth is None. K_d is that
     of `diffuse_attenuation`.
@@ -33,7 +31,7 @@ def optical_depths(metrics: Mapping[str, Any], water: WaterColumn) -> dict[str, 
         "attenuation_per_m": water.surface.attenuation,
         "diffuse_attenuation_per_m": diffuse_attenuation(water.surface),
     }
-    for name in DEPTHS:
+    for name in (key.removesuffix("_m") for key in metrics if key.endswith("_depth_m")):
         depth = metrics[f"{name}_m"]
         known = depth is not None
         values[f"{name}_c_z"] = float(water.attenuated(depth)) if known else None

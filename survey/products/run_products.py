@@ -21,7 +21,7 @@ from survey.products.frame_file import FrameResult
 from survey.products.grids import grid_elevation, write_bathymetry_tif
 from survey.products.json_file import write_json
 from survey.products.las_file import write_laz
-from survey.products.mesh_files import write_bathymetry_glb
+from survey.products.mesh_files import has_triangles, write_bathymetry_glb
 from survey.products.pixels import explain_empty
 from survey.products.ply_file import write_ply
 from survey.products.report import write_report
@@ -84,7 +84,8 @@ def write_products(
 ) -> dict[str, Any]:
     """Stitch the frames, write every product into the run folder, and return the metrics.
 
-    A cloud without points (the water surface of a flight over land) has no file.
+    A cloud without points (the water surface of a flight over land) has no file, nor has a mesh
+    without triangles (of a few false bottoms far apart).
 
     Raises
     ------
@@ -98,9 +99,10 @@ def write_products(
     _write_clouds(folder, bottom, surface, frames, seabed, settings)
     grid = grid_elevation(bottom, seabed.map_frame, cell_size=settings.grid)
     write_bathymetry_tif(folder / "bathymetry.tif", grid, seabed.map_frame)
-    write_bathymetry_glb(
-        folder / "bathymetry.glb", grid, seabed.map_frame, water_level=settings.water_level
-    )
+    if has_triangles(grid):
+        write_bathymetry_glb(
+            folder / "bathymetry.glb", grid, seabed.map_frame, water_level=settings.water_level
+        )
     area = surveyed_hull(records) if settings.survey_area is None else settings.survey_area
     cell = max(settings.grid, settings.pixel_spacing)
     coverage = coverage_map(

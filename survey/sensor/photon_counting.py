@@ -9,12 +9,15 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import gammaincinv, gammaln, pdtrc, xlogy
+from scipy.special import erfc, gammaincinv, gammaln, pdtrc, xlogy
 from scipy.stats import norm
 
 FloatArray = NDArray[np.float64]
 
 STIRLING_FROM = 16.0
+CROWDED_FROM = 1e4  # counts from which Temme's expansion is exact to 1e-10 near the threshold
+NEWTON_STEPS = 4
+NEAR = 0.1  # how near, as a share of the threshold
 
 
 def photo_electron_rate(*, power: Any, quantum_efficiency: float, photon_energy: float) -> Any:
@@ -130,7 +133,34 @@ def firing_probability(*, threshold: Any, mean: Any) -> Any:
     threshold = np.asarray(threshold, np.float64)
     _require(bool(np.all(threshold >= 1.0)), "threshold is below 1")
     _require(bool(np.all(np.asarray(mean) >= 0.0)), "mean is below 0")
-    return pdtrc(threshold - 1.0, mean)
+    return _reached(threshold, np.asarray(mean, np.float64))[()]
+
+
+def _reached(threshold: FloatArray, mean: FloatArray) -> FloatArray:
+    """Return w(n >= n_L): scipy's, and Temme's where its series for large counts falls short.
+
+    Over 10^6 counts that series stops before it has converged, further than 4.5 standard
+    deviations out, and gives too little: at 10^9 counts a quarter.
+    """
+    threshold, mean = np.broadcast_arrays(threshold, mean)
+    crowded = (threshold > CROWDED_FROM) & (np.abs(mean - threshold) < NEAR * threshold)
+    result = np.empty(threshold.shape)
+    result[~crowded] = pdtrc(threshold[~crowded] - 1.0, mean[~crowded])
+    result[crowded] = _temme(threshold[crowded], mean[crowded])
+    return result
+
+
+def _temme(a: FloatArray, x: FloatArray) -> FloatArray:
+    """Return the incomplete gamma function P(a, x) for large a and x near it.
+
+    N. M. Temme, SIAM Journal on Mathematical Analysis 10, 757 (1979).
+    """
+    excess = (x - a) / a
+    eta = np.sign(excess) * np.sqrt(2.0 * np.maximum(excess - np.log1p(excess), 0.0))
+    first = np.polynomial.polynomial.polyval(eta, (-1 / 3, 1 / 12, -2 / 135, 1 / 864, 1 / 2835))
+    second = np.polynomial.polynomial.polyval(eta, (-1 / 540, -1 / 288, 1 / 378))
+    rest = np.exp(-0.5 * a * eta**2) / np.sqrt(2.0 * np.pi * a) * (first + second / a)
+    return np.asarray(0.5 * erfc(-eta * np.sqrt(0.5 * a)) - rest)
 
 
 def firing_threshold(*, false_alarm: float, noise: Any) -> FloatArray:
@@ -153,15 +183,15 @@ def firing_threshold(*, false_alarm: float, noise: Any) -> FloatArray:
     _require(bool(np.all(mean >= 0.0)), "noise is below 0")
     values, place = np.unique(mean, return_inverse=True)
     deviate = float(norm.isf(false_alarm))
-    guess = values + deviate * np.sqrt(values) + (deviate**2 - 1.0) / 6.0
-    threshold = np.maximum(1.0, np.round(guess))
-    low = pdtrc(threshold - 1.0, values) > false_alarm
+    guess = values + deviate * np.sqrt(values) + (deviate**2 + 2.0) / 6.0
+    threshold = np.maximum(1.0, np.ceil(guess))
+    low = _reached(threshold, values) > false_alarm
     while low.any():
         threshold[low] += 1.0
-        low[low] = pdtrc(threshold[low] - 1.0, values[low]) > false_alarm
+        low[low] = _reached(threshold[low], values[low]) > false_alarm
     high = threshold > 1.0
     while high.any():
-        high[high] = pdtrc(threshold[high] - 2.0, values[high]) <= false_alarm
+        high[high] = _reached(threshold[high] - 1.0, values[high]) <= false_alarm
         threshold[high] -= 1.0
         high &= threshold > 1.0
     return np.asarray(threshold[place].reshape(np.shape(noise)))
@@ -188,7 +218,19 @@ def least_signal(*, probability: Any, threshold: Any, noise: Any = 0.0) -> Float
     _require(bool(np.all(inside)), "probability is not above 0 and below 1")
     _require(bool(np.all(np.asarray(threshold) >= 1.0)), "threshold is below 1")
     _require(bool(np.all(np.asarray(noise) >= 0.0)), "noise is below 0")
-    return np.asarray(np.maximum(gammaincinv(threshold, probability) - noise, 0.0))
+    return np.asarray(np.maximum(_mean_reaching(threshold, probability) - noise, 0.0))
+
+
+def _mean_reaching(threshold: Any, probability: Any) -> FloatArray:
+    """Return the mean count that reaches a threshold so often: scipy's, mended by Newton."""
+    threshold, probability = np.broadcast_arrays(threshold, probability)
+    mean = np.asarray(gammaincinv(threshold, probability))
+    many = threshold > CROWDED_FROM
+    for _ in range(NEWTON_STEPS if many.any() else 0):
+        reached = _reached(threshold[many] * 1.0, mean[many])
+        slope = count_probability(count=threshold[many] - 1, mean=mean[many]) / reached
+        mean[many] -= np.log(reached / probability[many]) / slope
+    return mean
 
 
 def _require(sound: Any, fault: str) -> None:

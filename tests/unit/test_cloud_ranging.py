@@ -99,6 +99,30 @@ def test_thresholds_are_raised_by_the_monte_carlo_error_of_model_and_flash() -> 
     assert wanted > noise_model(bottomless).bottom_threshold[1, 1, BINS // 2] + 5
 
 
+def test_a_flash_that_errs_more_than_the_model_raises_its_thresholds() -> None:
+    """By 4.5 deviations of what 11 bins of twice the error have more, the model's share too."""
+    light = np.full((9, 9, BINS), 20.0)
+    noise = noise_model(light, variance=4.0)
+    assert np.array_equal(noise.of_flash(light * 0.2).bottom_threshold, noise.bottom_threshold)
+    assert np.array_equal(noise.of_flash(light * 0.0).bottom_threshold, noise.bottom_threshold)
+    raised = noise.of_flash(light * 0.8).bottom_threshold - noise.bottom_threshold
+    wanted = norm.isf(1e-3 / BINS) * 11 * (4.0 - 2.0) * 1.25**0.5
+    assert raised[..., 20:-20] == pytest.approx(wanted, rel=1e-6)
+
+
+def test_a_bright_path_of_one_pixel_is_no_bottom() -> None:
+    """A pulse that came by one replicate of four: its error is its own size over 1.7."""
+    light = np.full((30, 30, BINS), 20.0)
+    path = np.zeros_like(light)
+    path[15, 15] = pulse(CALM_SURFACE + 100.0 * NS, 300.0)
+    noise, counts = noise_model(light), whole(light + path)
+    found = last(counts, noise).found
+    assert found[15, 15]
+    assert found.sum() == 1
+    assert not last(counts, noise.of_flash((path / 1.7) ** 2)).found.any()
+    assert last(counts, noise.of_flash((path / 4.0) ** 2 * 0.01)).found[15, 15]
+
+
 @pytest.mark.parametrize(("gate_ns", "bins"), [(10.0, 11), (9.0, 9), (6.0, 7), (1.0, 1)])
 def test_a_gate_is_odd_in_bins(gate_ns: float, bins: int) -> None:
     noise = NoiseModel.build(

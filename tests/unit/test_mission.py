@@ -203,3 +203,14 @@ def test_over_bottomless_water_false_bottoms_are_as_rare_as_stated() -> None:
         wrong = result.record.outcome == Outcome.FALSE_BOTTOM
         assert wrong.sum() == np.isin(result.bottom.classification, (40, 43)).sum()
         assert not np.any(result.bottom.classification == PointClass.GROUND)
+
+
+def test_bottoms_too_far_apart_for_a_mesh_leave_all_other_products(
+    small: Scenario, tmp_path: Path
+) -> None:
+    """Four pixels 1.6 m apart over cells of 0.5 m."""
+    few = {"camera.rows": 2, "camera.columns": 2, "processing.grid_m": 0.5}
+    run = fly(small.replace(**few, **{"flight.frames_per_line": 1}), tmp_path / "run", workers=1)
+    assert not (run / "bathymetry.glb").exists()
+    assert (run / "bathymetry.tif").exists()
+    assert metrics(run)["points_bottom"] == 4

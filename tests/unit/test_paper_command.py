@@ -115,6 +115,30 @@ def test_json_alone_on_standard_output(tmp_path, monkeypatch):
     assert "light of P02" in done.stderr
 
 
+def test_flights_join_the_results(tmp_path, monkeypatch):
+    """By c z of the flooding matrix; what they reach comes on the screen and into paper.json."""
+    row = dict.fromkeys(("snr_depth_m", "run_depth_m", "found_fraction"), 0.5)
+    row |= dict.fromkeys(("false_bottom_fraction", "hidden_false_fraction"), 0.001)
+    row |= dict.fromkeys(f"stitched_depth_{unit}" for unit in ("m", "c_z", "k_d_z"))
+    asked = {}
+
+    def fly_all(folder, *, limits, tell):
+        tell("flight p05-flat-day")
+        asked.update(folder=folder, limits=limits)
+        return {"p05-flat-day": row}
+
+    monkeypatch.setattr("survey.paper_flights.fly_all", fly_all)
+    done = RUN.invoke(app, [*QUICK, str(tmp_path / "new"), "--flights"])
+    assert done.exit_code == 0, done.output
+    found = json.loads((tmp_path / "new/paper.json").read_text())
+    assert found["flights"] == {"p05-flat-day": row}
+    assert asked["folder"] == tmp_path / "new/flights"
+    matrix = found["single_element"]["matrix"]["P05"]["limit_optical_depth"]
+    assert asked["limits"]["P05"] == pytest.approx(matrix, rel=1e-5)
+    assert "none" in done.stdout
+    assert "0.10 %" in done.stdout
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [

@@ -55,7 +55,8 @@ def test_probabilities_of_all_counts_sum_to_one() -> None:
 @pytest.mark.parametrize("mean", MEANS)
 def test_probability_of_firing_is_what_equation_9_leaves(mean: float) -> None:
     """Sum the rarer side of equation (9): from the threshold up, or below it."""
-    for threshold in {max(1, round(mean + k * mean**0.5)) for k in (-4.0, 0.5, 4.0)} | {1, 3}:
+    deviations = (-4.0, 0.5, 4.0, 5.0, 9.0)
+    for threshold in {max(1, round(mean + k * mean**0.5)) for k in deviations} | {1, 3}:
         above = threshold > mean
         reach = int(12.0 * mean**0.5) + 40
         low = threshold if above else max(0, threshold - reach)
@@ -82,11 +83,11 @@ def test_thresholds_keep_the_shape_of_the_noise() -> None:
     assert np.array_equal(firing_threshold(false_alarm=1e-4, noise=noise), wanted)
 
 
-@pytest.mark.parametrize("probability", [0.01, 0.5, 0.9, 0.9999])
+@pytest.mark.parametrize("probability", [1e-7, 0.01, 0.5, 0.9, 0.9999])
 def test_least_signal_fires_with_the_probability_asked_for(probability: float) -> None:
-    threshold = np.array([1.0, 2.0, 10.0, 1e4, 1e9])
-    signal = least_signal(probability=probability, threshold=threshold, noise=0.001)
-    fires = firing_probability(threshold=threshold, mean=signal + 0.001)
+    threshold = np.array([1.0, 2.0, 10.0, 1e4, 1e7, 1e9])
+    signal = least_signal(probability=probability, threshold=threshold, noise=1e-9)
+    fires = firing_probability(threshold=threshold, mean=signal + 1e-9)
     assert fires == pytest.approx(probability, rel=1e-6)
     assert least_signal(probability=0.01, threshold=2, noise=50.0) == 0.0
 
