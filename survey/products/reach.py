@@ -8,6 +8,8 @@ from typing import Any
 from survey.optics.water import WaterColumn
 from survey.optics.water.apparent import diffuse_attenuation
 
+DEPTHS = ("found_depth", "half_found_depth", "detection_depth")
+
 
 def optical_depths(metrics: Mapping[str, Any], water: WaterColumn) -> dict[str, float | None]:
     """Return c z and K_d z for each value named ``*_depth_m``, and c and K_d under the surface.
