@@ -58,7 +58,7 @@ CASES = {
         water="coastal", depth_m=10.0, walks_per_pixel=48, surface=WIND_WAVES
     ),
     "coastal 20 m": Case(water="coastal", depth_m=20.0, walks_per_pixel=104, column_spacing=2.5),
-    "harbor 4 m": Case(water="harbor", depth_m=4.0, walks_per_pixel=92),
+    "harbor 4 m": Case(water="harbor", depth_m=4.0, walks_per_pixel=104),
 }
 
 

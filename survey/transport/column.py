@@ -14,17 +14,22 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+from numpy.typing import NDArray
 from scipy.constants import speed_of_light
 
 from survey.transport.beam import Ray
 from survey.transport.launch import Optics, fraction
 from survey.transport.layers import Layers, crossed, density_at, free_path
 from survey.transport.light_sent import Facet, Method, Sight, is_open, light_sent
+from survey.transport.random import uniform
 from survey.transport.scene import Scene
 from survey.transport.sheet import crest_or_trough
 from survey.transport.tally import COLUMN, Tally, deposit
 from terrain.kernels import inlined_kernel
 
+MANY = 8.0
+"""Scatterings of a path from which on not every pair of a point and a leg is joined."""
 FLATTEST = 0.01
 """Least cosine to the vertical of a leg that is taken to cross a depth [1]."""
 
@@ -45,11 +50,13 @@ def join(
     back_number: int,
     to: float,
     at_walk: bool,
+    chance: float,
 ) -> None:
     """Let light scatter from a leg of the track into one of the walk, which meet at a depth.
 
     The point is the walk's if ``at_walk``, and the track's depth is where it crosses that of the
-    point; else it is the track's, and the walk crosses. On waves what crosses slides.
+    point; else it is the track's, and the walk crosses. On waves what crosses slides. The light
+    stands for that of all pairs, of which only this ``chance`` is taken.
     """
     leg, back = tally.down[number], tally.back[back_number]
     cosine = -(leg[3] * back[3] + leg[4] * back[4] + leg[5] * back[5])
@@ -92,7 +99,7 @@ def join(
     photons = method.photons * leg[10] * light * sight.importance * back[10] * turn
     deposit(
         tally, COLUMN, sight.batch, sight.time + in_air / speed_of_light + whole / layers.speed,
-        photons * 2.0 * method.spacing / upright * math.exp(-absorbed),
+        photons * 2.0 * method.spacing / upright / chance * math.exp(-absorbed),
     )  # fmt: skip
 
 
@@ -114,11 +121,13 @@ def light_column(
     facet: Facet,
     legs: int,
     start: float,
+    state: NDArray[np.uint64],
 ) -> None:
     """Join the track, of so many legs, and the walk at points of both.
 
     Points of either stand two spacings apart and begin at ``start`` of that, 0 to 1; those of the
-    walk stand midway between those of the track.
+    walk stand midway between those of the track. There are as many pairs of n scatterings as n: of
+    more than `MANY` a share of `MANY` / n is joined, first of the points, then of their pairs.
     """
     slack, apart = crest_or_trough(scene), 2.0 * method.spacing
     for side in range(2):
@@ -133,6 +142,10 @@ def light_column(
             ahead = crossed(layers, layers.scattering, layers.scattered, leg[2], -leg[5], leg[6])
             while sample < leg[9] + ahead:
                 along = free_path(layers, leg[2], -leg[5], sample - leg[9])
+                sample += apart
+                taken = min(1.0, MANY / (number + 1.0))
+                if taken < 1.0 and uniform(state) >= taken:
+                    continue
                 depth = leg[2] - leg[5] * along
                 for other in range(other_count):
                     crossing = others[other]
@@ -140,9 +153,12 @@ def light_column(
                     beyond = slack * abs(crossing[12])
                     if abs(crossing[5]) < FLATTEST or not -beyond <= to < crossing[6] + beyond:
                         continue
+                    chance = min(1.0, MANY / (number + other + 1.0))
+                    if chance < 1.0 and uniform(state) * taken >= chance:
+                        continue
                     join(
                         scene, layers, optics, method, tally, sight, ray, facet, depth,
                         other if at_walk else number, to if at_walk else along,
                         number if at_walk else other, along if at_walk else to, at_walk,
+                        chance,
                     )  # fmt: skip
-                sample += apart

@@ -163,7 +163,7 @@ def send_light(
         dx, dy, dz, state,
     )  # fmt: skip
     if with_column:
-        light_column(scene, layers, optics, method, tally, sight, ray, facet, legs, start)
+        light_column(scene, layers, optics, method, tally, sight, ray, facet, legs, start, state)
 
 
 @inlined_kernel
