@@ -15,6 +15,8 @@ from typing import Any, TypeVar, cast
 
 import numba
 
+PLAIN: dict[str, Any] = {"error_model": "numpy", "fastmath": False}
+"""Stated for every kernel: what a kernel does not state it takes over from its first caller."""
 KERNEL_ROOMS = ("terrain", "survey/optics", "survey/sensor", "survey/transport")
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -46,7 +48,7 @@ def kernel(function: F) -> F:
     Kernels take scalars, arrays and named tuples, allocate nothing they can be handed, and raise
     nothing: the array function around them checks its arguments first.
     """
-    return cast(F, numba.njit(function, nogil=True, cache=True, error_model="numpy"))
+    return cast(F, numba.njit(function, nogil=True, cache=True, **PLAIN))
 
 
 def leaf_kernel(function: F) -> F:
@@ -56,7 +58,7 @@ def leaf_kernel(function: F) -> F:
     it a kernel may read and write arrays and call other leaf kernels, but create none.
     """
     compiled = numba.njit(  # type: ignore[call-overload]
-        function, nogil=True, cache=True, error_model="numpy", _nrt=False
+        function, nogil=True, cache=True, _nrt=False, **PLAIN
     )
     return cast(F, compiled)
 
@@ -68,7 +70,7 @@ def inlined_kernel(function: F) -> F:
     arrays costs as much as fifty multiplications.
     """
     compiled = numba.njit(  # type: ignore[call-overload]
-        function, nogil=True, error_model="numpy", inline="always", _nrt=False
+        function, nogil=True, inline="always", _nrt=False, **PLAIN
     )
     return cast(F, compiled)
 

@@ -78,3 +78,26 @@ def test_every_kernel_lies_where_an_edit_is_noticed():
     assert [path for path in holders if not any(room in path.parents for room in rooms)] == []
     compiling = [path.name for path, text in texts.items() if "jit(" in text]
     assert compiling == ["kernels.py"]
+
+
+@kernels.leaf_kernel
+def less_one(x: float, y: float) -> float:
+    """Product less 1."""
+    return x * y - 1.0
+
+
+@kernels.fused_kernel
+def fused_less_one(x: float, y: float) -> float:
+    """The same, called from a kernel that may multiply and subtract in one step."""
+    return less_one(x, y)
+
+
+def test_a_kernel_rounds_alike_whoever_calls_it_first():
+    """(1 + e) (1 - e) - 1 is 0 in two steps and -e^2 in one, as a fused kernel may do it.
+
+    Numba hands the caller's options on to what it compiles for it, unless that states its own:
+    where a fused kernel met it first, the seabed lost its watertight edges.
+    """
+    e = 2.0**-30
+    fused_less_one(1.0 + e, 1.0 - e)
+    assert less_one(1.0 + e, 1.0 - e) == 0.0
