@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.transport.random import uniform
+from survey.transport.table import value_at
 from terrain.kernels import leaf_kernel
 
 
@@ -32,9 +33,7 @@ def turned(
 @leaf_kernel
 def drawn(sampler: NDArray[np.float64], share: float, state: NDArray[np.uint64]) -> float:
     """Draw 1 - cos of a scattering angle from the forward ``share`` of a phase function."""
-    place = uniform(state) * share * (sampler.shape[0] - 1)
-    i = int(place)
-    return float(sampler[i] + (place - i) * (sampler[i + 1] - sampler[i]))
+    return value_at(sampler, uniform(state) * share)
 
 
 @leaf_kernel

@@ -100,7 +100,7 @@ class Engine:
         settings: TransportSettings,
         seed: int,
     ) -> None:
-        self.water = WaterColumn.uniform(water) if isinstance(water, Water) else water
+        self.water = WaterColumn.of(water)
         self.surface, self.settings, self.seed = surface, settings, seed
         self.laser, self.camera, self.receiver = laser, camera, receiver
         self.photo_electrons = laser.photons_per_pulse * photo_electrons_per_photon

@@ -16,6 +16,7 @@ from survey.optics.interface import fresnel_reflectance, refracted
 from survey.optics.phase import PhaseFunction
 from survey.transport.launch import Optics, direction_of, pixel_at
 from survey.transport.random import uniform
+from survey.transport.table import value_at
 from terrain.kernels import leaf_kernel
 
 FloatArray = NDArray[np.float64]
@@ -71,9 +72,7 @@ def density_between(
 ) -> float:
     """Density of scattering from one unit direction into another [1/sr], by `density_table`."""
     half_chord = 0.5 * math.sqrt((wx - dx) ** 2 + (wy - dy) ** 2 + (wz - dz) ** 2)
-    place = min(1.0, math.sqrt(half_chord)) * (table.shape[0] - 1)
-    i = min(int(place), table.shape[0] - 2)
-    return float(table[i] + (place - i) * (table[i + 1] - table[i]))
+    return value_at(table, min(1.0, math.sqrt(half_chord)))
 
 
 @leaf_kernel

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.constants import speed_of_light
 
 from survey.optics.water import WaterColumn
+from survey.transport.table import value_at
 from terrain.kernels import inlined_kernel, leaf_kernel
 
 FloatArray = NDArray[np.float64]
@@ -147,9 +148,7 @@ def crossed_layers(
 def bend_at(layers: Layers, depth: float, chance: float) -> float:
     """Return 1 - cos of the angle below which a share ``chance`` of all scattering there goes."""
     table = layers.samplers[layers.phase[last_at(layers.tops, depth)]]
-    place = chance * (table.shape[0] - 1)
-    i = min(int(place), table.shape[0] - 2)
-    return float(table[i] + (place - i) * (table[i + 1] - table[i]))
+    return value_at(table, chance)
 
 
 @inlined_kernel
@@ -162,6 +161,4 @@ def wide_turn(layers: Layers, depth: float, cosine: float, split_cosine: float) 
 def density_at(layers: Layers, depth: float, cosine: float) -> float:
     """Phase function of the water at a depth, at the cosine of a wide angle [1/sr]."""
     table = layers.densities[layers.phase[last_at(layers.tops, depth)]]
-    place = max(0.0, 0.5 * (cosine + 1.0) * (table.shape[0] - 1))
-    i = min(int(place), table.shape[0] - 2)
-    return float(table[i] + (place - i) * (table[i + 1] - table[i]))
+    return value_at(table, max(0.0, 0.5 * (cosine + 1.0)))

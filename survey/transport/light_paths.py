@@ -23,7 +23,7 @@ from survey.transport.beam import Ray, ray_to
 from survey.transport.column import FLATTEST, light_column
 from survey.transport.launch import Optics
 from survey.transport.layers import Layers, crossed, free_path, wide_turn
-from survey.transport.light_sent import GAP, Facet, Method, Sight, is_open, light_sent
+from survey.transport.light_sent import GAP, Facet, Method, Sight, is_open, light_sent, longest_path
 from survey.transport.random import uniform
 from survey.transport.scene import FOLLOWED, Scene
 from survey.transport.surface import (
@@ -194,8 +194,7 @@ def follow(
     frame = frame_around(dx, dy, dz, method.circle, state)
     which, k, turning, legs = 2 * sight.batch, 0, False, 0
     x = y = depth = path = absorbed = scattered = deepest = turns = 0.0
-    height = optics.position[2] - scene.waves.highest
-    limit = (scene.bounds.latest - sight.time - height / speed_of_light) * layers.speed
+    limit = longest_path(scene, layers, optics, sight)
     floor = scene.waves.highest - scene.bounds.lowest
     over, under = scene.waves.highest - sea.level, sea.level - scene.waves.lowest
     beyond = place.gain == 0.0

@@ -12,9 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.constants import speed_of_light
 
 from survey.transport.beam import Ray, light_on_water
 from survey.transport.launch import Optics
+from survey.transport.layers import Layers
 from survey.transport.scene import Scene
 from survey.transport.sheet import through_waves
 from survey.transport.tally import Tally
@@ -134,6 +136,13 @@ def light_sent(
     down = depth + deepening * lift
     straight = math.sqrt((x - px) ** 2 + (y - py) ** 2 + down * down)
     return Sent(light * thinned, in_air, deeper, straight, lift)
+
+
+@inlined_kernel
+def longest_path(scene: Scene, layers: Layers, optics: Optics, sight: Sight) -> float:
+    """Path in water [m] after which light to or from a walk comes later than the gate."""
+    height = optics.position[2] - scene.waves.highest
+    return float((scene.bounds.latest - sight.time - height / speed_of_light) * layers.speed)
 
 
 @inlined_kernel

@@ -20,7 +20,7 @@ from survey.transport.light_paths import (
     Place,
     send_light,
 )
-from survey.transport.light_sent import Method, Sight
+from survey.transport.light_sent import Method, Sight, longest_path
 from survey.transport.random import PIXELS, start_stream, uniform
 from survey.transport.scene import Scene
 from survey.transport.sheet import first_water, sea_under, water_above
@@ -230,8 +230,7 @@ def see_bottom(
     state: NDArray[np.uint64],
 ) -> None:
     """Walk back from under the surface, from touch to touch of the bottom, and light it all."""
-    height = optics.position[2] - scene.waves.highest
-    limit = (scene.bounds.latest - sight.time - height / speed_of_light) * layers.speed
+    limit = longest_path(scene, layers, optics, sight)
     tally.noted[0], entered, which = 0, start.weight, 2 * sight.batch
     entry_weight, touches = back.weight, 0
     while True:

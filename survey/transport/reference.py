@@ -284,7 +284,7 @@ def reference_flash(
     """
     optics = kernel_optics(camera=camera, receiver=receiver, pose=pose)
     bins = TimeBins(receiver.gate_start, receiver.bin_width, receiver.bins)
-    column = WaterColumn.uniform(water) if isinstance(water, Water) else water
+    column = WaterColumn.of(water)
     layers = kernel_layers(column)
     tables = np.array([density_table(phase) for phase in column.phase_functions])
     result = np.zeros((batches, 2, receiver.bins))

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from survey.transport.directions import drawn, turned
 from survey.transport.random import exponential, uniform
 from survey.transport.scene import Medium
+from survey.transport.table import value_at
 from terrain.kernels import leaf_kernel
 
 FloatArray = NDArray[np.float64]
@@ -160,7 +161,6 @@ def pair_tracks(
     bin_width: float,
 ) -> None:
     """Add all meetings of two sets of walks to ``column`` (2, bins) of half the path length."""
-    entries = cosine_table.shape[0] - 1
     for k in range(planes.number):
         side = footprint.side + footprint.growth * (planes.first + k * planes.spacing)
         f = forward.head[k]
@@ -172,11 +172,7 @@ def pair_tracks(
                 cosine = -(a[f, 4] * s[b, 4] + a[f, 5] * s[b, 5] + a[f, 6] * s[b, 6])
                 at = int(0.5 * (a[f, 2] + s[b, 2]) / bin_width)
                 if cosine < split_cosine and at < column.shape[1]:
-                    place = max(0.0, 0.5 * (cosine + 1.0) * entries)
-                    i = min(int(place), entries - 1)
-                    density = cosine_table[i] + (place - i) * (
-                        cosine_table[i + 1] - cosine_table[i]
-                    )
+                    density = value_at(cosine_table, max(0.0, 0.5 * (cosine + 1.0)))
                     light = factor * density * a[f, 3] * s[b, 3]
                     column[FLOOD, at] += light
                     overlap = triangle(a[f, 0] - s[b, 0], side)

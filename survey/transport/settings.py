@@ -21,10 +21,10 @@ class TransportSettings:
         Walks in open water that each replicate draws, for the laser's side and as many for the
         pixels'; all light paths of a flash are laid along them.
     split_angle : float
-        A scattering in the column by more than this is a turn, where two walks meet [rad].
+        A scattering in the column by more than this is a wide turn, where two walks may meet [rad].
     column_spacing : float
-        Path between the points of the laser's track that light the column, in attenuation
-        lengths 1 / c [1].
+        Path between the points where the column is lit, in attenuation lengths 1 / c; they lie by
+        turns on the laser's track and on the walk from the pixel [1].
     illumination : {"flood", "isolated"}
         Whether a pixel sees the light launched into every cone or into its own alone.
     """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -36,31 +37,24 @@ def summed(engine, flashes, origin):
     )
 
 
-def test_a_layer_split_in_ten_changes_nothing(engine_of):
+@pytest.mark.parametrize(
+    ("whole", "top", "bottom", "apart", "layers"),
+    [
+        (WaterColumn.uniform(petzold("coastal")), 0.0, math.inf, 1.0, 10),
+        (THREE, 4.0, 5.0, 0.1, 12),
+    ],
+    ids=["uniform water", "turns that differ by depth"],
+)
+def test_a_layer_split_in_ten_changes_nothing(engine_of, whole, top, bottom, apart, layers):
     """The same walks in the same water: equal to the rounding of single precision."""
-    whole = WaterColumn.uniform(petzold("coastal"))
     split = whole
-    for top in range(1, 10):
-        split = split.with_layer(whole.surface, top=float(top))
-    assert len(split.layers) == 10
+    for part in range(1, 10):
+        split = split.with_layer(whole.at(top), top=top + apart * part, bottom=bottom)
+    assert len(split.layers) == layers
     pose = level_pose()
     light = [
         engine_of(column=column, shape=(4, 8)).flash(pose=pose, frame=3).photo_electrons
         for column in (whole, split)
-    ]
-    assert light[1] == pytest.approx(light[0], rel=1e-4, abs=1e-6 * float(light[0].max()))
-
-
-def test_a_layer_of_layers_split_in_ten_changes_nothing(engine_of):
-    """The same with turns that differ by depth."""
-    split = THREE
-    for part in range(1, 10):
-        split = split.with_layer(THREE.at(4.5), top=4.0 + 0.1 * part, bottom=5.0)
-    assert len(split.layers) == 12
-    pose = level_pose()
-    light = [
-        engine_of(column=column, shape=(4, 8)).flash(pose=pose, frame=3).photo_electrons
-        for column in (THREE, split)
     ]
     assert light[1] == pytest.approx(light[0], rel=1e-4, abs=1e-6 * float(light[0].max()))
 

@@ -78,6 +78,11 @@ class WaterColumn:
         """Return the same water at all depths."""
         return cls(layers=(Layer(top=0.0, water=water),))
 
+    @classmethod
+    def of(cls, water: Water | WaterColumn) -> WaterColumn:
+        """Return a column as it is, and of one water the column that it fills."""
+        return cls.uniform(water) if isinstance(water, Water) else water
+
     @property
     def surface(self) -> Water:
         """The water right under the surface."""
