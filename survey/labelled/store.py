@@ -107,8 +107,14 @@ def write_blocks(path: Path, blocks: Iterable[xarray.Dataset], *, layout: Layout
     _require_same(path, written)
 
 
-def open_waveforms(path: Path) -> xarray.Dataset:
+def open_waveforms(path: Path, *, chunks: Any = "auto") -> xarray.Dataset:
     """Open a folder of labelled waveforms that is whole; arrays are read when they are used.
+
+    Parameters
+    ----------
+    path : Path
+    chunks : optional
+        As in `xarray.open_zarr`: None opens it without dask.
 
     Raises
     ------
@@ -124,7 +130,7 @@ def open_waveforms(path: Path) -> xarray.Dataset:
     fault = _fault(path)
     if fault:
         raise UserError(f"{path}: not a whole set of waveforms: {fault}. Write it again")
-    return xarray.open_zarr(path)
+    return xarray.open_zarr(path, chunks=chunks)
 
 
 def _fault(path: Path) -> str:
@@ -164,7 +170,7 @@ class _Written:
 
 
 def _require_same(path: Path, written: _Written) -> None:
-    found = open_waveforms(path)
+    found = open_waveforms(path, chunks=None)
     frames, tags = _split(found)
     for part, dim, digests, sizes in (
         (frames, "frame", written.frames, written.sizes),
