@@ -93,6 +93,7 @@ def check(
 ) -> None:
     """Check scenario files and show all their faults at once."""
     from survey.scenario.components import flight_size
+    from survey.scenario.gate_notes import gate_notes
     from survey.scenario.load import load_scenario, parse_overrides
     from survey.scenario.seabed_files import require_readable_files
     from survey.scenario.sun import sun_notes
@@ -109,7 +110,8 @@ def check(
             statuses.add(status)
         else:
             typer.echo(f"{sound.name}: sound, {flight_size(sound)}")
-            for note in (*water_notes(sound), *sun_notes(sound.sun, sound.surface)):
+            notes = (*water_notes(sound), *sun_notes(sound.sun, sound.surface), *gate_notes(sound))
+            for note in notes:
                 typer.echo(f"{sound.name}: {note}")
     for status in (OUR_FAULT, BAD_INPUT, FILE_MISSING):
         if status in statuses:
