@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from survey import run_folder
+from survey import run_identity
 from survey.errors import OtherRunError
 from survey.exit_status import OTHER_RUN, explain
 from survey.products.frame_file import FrameResult, frame_bytes, read_frame, write_frame
@@ -157,8 +157,8 @@ def test_other_code_and_versions_are_refused(
     scenario: Scenario, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     RunFolder.open(tmp_path / "run", scenario)
-    monkeypatch.setattr(run_folder, "_code_digest", lambda: "other")
-    monkeypatch.setattr(run_folder.metadata, "version", lambda name: "0")
+    monkeypatch.setattr(run_identity, "_code_digest", lambda: "other")
+    monkeypatch.setattr(run_identity.metadata, "version", lambda name: "0")
     assert "other library versions, other code" in refused(scenario, tmp_path / "run")
 
 
