@@ -13,7 +13,7 @@ from survey.errors import OtherRunError
 from survey.journal import Note, read_notes, write_note
 from survey.products.frame_file import FrameResult, read_frame, write_frame
 from survey.products.json_file import write_json
-from survey.products.writing import write_whole
+from survey.products.writing import is_partial, write_whole
 from survey.run_identity import (
     MANIFEST,
     SCENARIO,
@@ -22,7 +22,7 @@ from survey.run_identity import (
     manifest_of,
     require_same,
 )
-from survey.run_lock import sole_pilot
+from survey.run_lock import LOCK, sole_pilot
 from survey.scenario.scenario import Scenario
 
 JOURNAL = "journal.jsonl"
@@ -72,7 +72,7 @@ class RunFolder:
                 _remove_run(path)
         elif found is not None:
             require_same(path, found, manifest, resolved)
-        elif path.exists() and any(path.iterdir()):
+        elif path.exists() and not all(_is_left_behind(file) for file in path.iterdir()):
             raise OtherRunError(f"{path}: holds files but no run. Choose another folder with -o")
         path.mkdir(parents=True, exist_ok=True)
         write_json(path / MANIFEST, manifest)
@@ -94,6 +94,11 @@ class RunFolder:
     def read(self, indices: Sequence[int]) -> list[FrameResult]:
         """Read frames in the order given."""
         return [read_frame(self.frame_path(index)) for index in indices]
+
+
+def _is_left_behind(file: Path) -> bool:
+    """Tell whether a run that was killed at its first files may have left this."""
+    return file.name == LOCK or is_partial(file)
 
 
 def _remove_run(path: Path) -> None:

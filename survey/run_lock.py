@@ -44,7 +44,7 @@ def sole_pilot(folder: Path) -> Iterator[None]:
     """
     with (folder / LOCK).open("a+", encoding="utf-8") as file:
         if not _locked(file):
-            raise BusyRunError(f"{folder}: {_words(_named_in(folder))}. Wait for it")
+            raise _busy(folder, _named_in(folder))
         file.truncate(0)
         json.dump(asdict(Pilot(process=os.getpid(), machine=socket.gethostname())), file)
         file.flush()
@@ -93,7 +93,14 @@ def _named_in(folder: Path) -> Pilot | None:
         return None
 
 
-def _words(pilot: Pilot | None) -> str:
-    if pilot is None or not pilot.process:
-        return "another process flies into this folder"
-    return f"process {pilot.process} on {pilot.machine} flies into this folder"
+def require_free(folder: Path) -> None:
+    """Raise `BusyRunError` when another process flies into a folder now."""
+    pilot = pilot_of(folder)
+    if pilot is not None:
+        raise _busy(folder, pilot)
+
+
+def _busy(folder: Path, pilot: Pilot | None) -> BusyRunError:
+    known = pilot is not None and pilot.process
+    words = f"process {pilot.process} on {pilot.machine}" if pilot and known else "another process"
+    return BusyRunError(f"{folder}: {words} flies into this folder. Wait for it or choose another")

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+PARTIAL = ".partial"
+
 
 class ProductError(ValueError):
     """A product that cannot be made from its inputs; the text says why and what to do."""
@@ -38,7 +40,7 @@ def whole_file(path: Path) -> Iterator[Path]:
     >>> [file.name for file in path.parent.iterdir()], path.read_text()
     (['note.txt'], 'whole')
     """
-    partial = path.with_name(f".{path.stem}.partial{path.suffix}")
+    partial = path.with_name(f".{path.stem}{PARTIAL}{path.suffix}")
     try:
         yield partial
         flush(partial)
@@ -47,6 +49,17 @@ def whole_file(path: Path) -> Iterator[Path]:
         partial.unlink(missing_ok=True)
         raise
     flush(path.parent)
+
+
+def is_partial(path: Path) -> bool:
+    """Tell whether a name is a temporary one of `whole_file`, left by a process that was killed.
+
+    Examples
+    --------
+    >>> is_partial(Path(".bottom.partial.laz")), is_partial(Path("bottom.laz"))
+    (True, False)
+    """
+    return path.name.startswith(".") and PARTIAL in path.name
 
 
 def write_whole(path: Path, content: bytes) -> None:
