@@ -16,6 +16,7 @@ from survey.scenario.scenario import Scenario
 MANIFEST, SCENARIO = "manifest.json", "scenario.toml"
 LIBRARIES = ("numpy", "scipy", "numba", "trimesh", "laspy", "rasterio", "pyproj")
 MOST_KEYS = 4
+PROSE = {"title", "description", "expect", "source"}
 
 
 def manifest_of(scenario: Scenario) -> dict[str, Any]:
@@ -87,6 +88,7 @@ def _changed_keys(flown: Path, resolved: str) -> str:
         return ""
     now = flat_keys(tomllib.loads(resolved))
     changed = [key for key in now | before if before.get(key) != now.get(key)]
+    changed.sort(key=lambda key: key.rsplit(".", 1)[-1] in PROSE)
     words = [
         f"{key} was {before.get(key, 'absent')}, now {now.get(key, 'absent')}"
         for key in changed[:MOST_KEYS]
