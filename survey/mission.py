@@ -131,10 +131,11 @@ def fly(
         raise UserError(f"{folder}: no frame was flown. Choose frames with --frames A:B")
     found = write_products(
         folder,
-        results=run.read([frame.index for frame in present]),
+        read=run.frame,
         frames=present,
         seabed=mission.seabed,
         settings=mission.products,
+        watch=watch,
     )
     write_performance(folder / "performance.json", clock)
     watch.finished(summary(folder, found))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
@@ -71,9 +71,9 @@ class RunFolder:
             os.fsync(journal.fileno())
         self.whole[index] = digest
 
-    def read(self, indices: Sequence[int]) -> list[FrameResult]:
-        """Read frames in the order given."""
-        return [read_frame(self.frame_path(index)) for index in indices]
+    def frame(self, index: int) -> FrameResult:
+        """Read a frame."""
+        return read_frame(self.frame_path(index))
 
 
 def _manifest(scenario: Scenario, resolved: str) -> dict[str, Any]:
