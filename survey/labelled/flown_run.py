@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -14,7 +13,8 @@ from survey.cloud.points import PixelRecord
 from survey.cloud.raw import RawReadings
 from survey.errors import OtherRunError, UserError
 from survey.products.frame_file import FrameResult, read_frame, read_raw
-from survey.run_folder import MANIFEST, whole_frames
+from survey.run_folder import whole_frames
+from survey.run_identity import SCENARIO, found_manifest
 from survey.scenario.load import load_scenario
 from survey.scenario.scenario import Scenario
 
@@ -52,9 +52,12 @@ class FlownRun:
         """
         if not folder.is_dir():
             raise FileNotFoundError(2, "No such run folder", str(folder))
-        identity = _identity(folder / MANIFEST)
-        scenario = load_scenario(folder / "scenario.toml")
-        whole = tuple(sorted({index for index, _ in whole_frames(folder)}))
+        manifest = found_manifest(folder)
+        if manifest is None:
+            raise UserError(f"{folder}: holds no run. Make one with: bathyflash run")
+        identity = {key: str(manifest.get(key)) for key in ("scenario_sha256", "code_sha256")}
+        scenario = load_scenario(folder / SCENARIO)
+        whole = tuple(sorted(whole_frames(folder)[0]))
         if not whole:
             raise UserError(f"{folder}: no whole frame in it. Fly it with: bathyflash run")
         return cls(folder=folder, scenario=scenario, identity=identity, whole=whole)
@@ -94,14 +97,6 @@ class FlownRun:
                 f"{path}: flown again, the frame differs in {_few(other)}. The run is of other "
                 "code, other libraries or changed files: fly it anew with: bathyflash run"
             )
-
-
-def _identity(manifest: Path) -> dict[str, str]:
-    try:
-        found = json.loads(manifest.read_text(encoding="utf-8"))
-        return {key: str(found[key]) for key in ("scenario_sha256", "code_sha256")}
-    except (OSError, ValueError, KeyError, TypeError):
-        raise UserError(f"{manifest.parent}: holds no run. Make one with: bathyflash run") from None
 
 
 def _differences(kept: FrameResult, again: FrameResult) -> Iterator[str]:

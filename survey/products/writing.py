@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+PARTIAL = ".partial"
+
 
 class ProductError(ValueError):
     """A product that cannot be made from its inputs; the text says why and what to do."""
@@ -39,15 +41,26 @@ def whole_file(path: Path) -> Iterator[Path]:
     >>> [file.name for file in path.parent.iterdir()], path.read_text()
     (['note.txt'], 'whole')
     """
-    partial = path.with_name(f".{path.stem}.partial{path.suffix}")
+    partial = path.with_name(f".{path.stem}{PARTIAL}{path.suffix}")
     try:
         yield partial
-        _flush(partial)
+        flush(partial)
         partial.replace(path)
     except BaseException:
         partial.unlink(missing_ok=True)
         raise
-    _flush(path.parent)
+    flush(path.parent)
+
+
+def is_partial(path: Path) -> bool:
+    """Tell whether a name is a temporary one of `whole_file`, left by a process that was killed.
+
+    Examples
+    --------
+    >>> is_partial(Path(".bottom.partial.laz")), is_partial(Path("bottom.laz"))
+    (True, False)
+    """
+    return path.name.startswith(".") and PARTIAL in path.name
 
 
 @contextmanager
@@ -68,7 +81,7 @@ def whole_folder(path: Path) -> Iterator[Path]:
     try:
         yield partial
         for place in (*partial.rglob("*"), partial):
-            _flush(place)
+            flush(place)
         if path.exists():
             shutil.rmtree(old, ignore_errors=True)
             path.replace(old)
@@ -76,7 +89,7 @@ def whole_folder(path: Path) -> Iterator[Path]:
     except BaseException:
         shutil.rmtree(partial, ignore_errors=True)
         raise
-    _flush(path.parent)
+    flush(path.parent)
     shutil.rmtree(old, ignore_errors=True)
 
 
@@ -101,7 +114,8 @@ def require_read_back(path: Path, what: str, is_equal: bool) -> None:
         )
 
 
-def _flush(path: Path) -> None:
+def flush(path: Path) -> None:
+    """Flush a file, or the names in a folder, to the disk."""
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)
