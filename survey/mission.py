@@ -18,6 +18,7 @@ from survey.errors import UserError
 from survey.flight.pose import Frame
 from survey.preparation import Mission, prepare
 from survey.products.frame_file import FrameResult
+from survey.products.observation import Observation
 from survey.products.performance import Stopwatch, write_performance
 from survey.products.run_products import write_products
 from survey.progress import Unwatched, Watcher
@@ -29,6 +30,11 @@ from survey.transport.random import COUNTS, chance
 
 
 def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
+    """Fly one flash and return what a run keeps: points, and the truth beside them."""
+    return observe(mission, frame).result
+
+
+def observe(mission: Mission, frame: Frame) -> Observation:
     """Fly one flash: expected light, readings, ranges, points, and the truth beside them."""
     engine, surface = mission.engine, mission.sea.at(frame.time)
     noise = mission.noise_at(frame.measured, time=frame.time)
@@ -81,7 +87,16 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
         group_index=engine.water.group_index,
     )
     raw = mission.raw_of(readings)
-    return FrameResult(bottom=on_bottom, surface=on_surface, record=record, raw=raw)
+    return Observation(
+        frame=frame,
+        waveforms=waveforms,
+        readings=readings,
+        noise=in_doubt,
+        first=first,
+        bottom=bottom,
+        targets=targets,
+        result=FrameResult(bottom=on_bottom, surface=on_surface, record=record, raw=raw),
+    )
 
 
 def fly(

@@ -77,7 +77,7 @@ class RunFolder:
         write_json(path / MANIFEST, manifest)
         write_whole(path / SCENARIO, resolved.encode())
         (path / "frames").mkdir(exist_ok=True)
-        whole, spoilt = _frames(path)
+        whole, spoilt = whole_frames(path)
         return cls(path=path, whole=whole, spoilt=spoilt)
 
     def frame_path(self, index: int) -> Path:
@@ -108,7 +108,7 @@ def _remove_run(path: Path) -> None:
             file.unlink()
 
 
-def _frames(path: Path) -> tuple[dict[int, str], dict[int, str]]:
+def whole_frames(path: Path) -> tuple[dict[int, str], dict[int, str]]:
     """Return the frames whose file still is what the journal says, and why others are not."""
     whole, spoilt = {}, {}
     for index, sha256 in {n.frame: n.sha256 for n in read_notes(path / JOURNAL)}.items():

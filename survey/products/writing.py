@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -60,6 +61,36 @@ def is_partial(path: Path) -> bool:
     (True, False)
     """
     return path.name.startswith(".") and PARTIAL in path.name
+
+
+@contextmanager
+def whole_folder(path: Path) -> Iterator[Path]:
+    """Give a temporary name for a folder, and rename it when the block succeeds.
+
+    As `whole_file`; the block makes the folder. One that stands at ``path`` is replaced, and what
+    a killed writer left under the temporary name is taken away first.
+
+    Parameters
+    ----------
+    path : Path
+        The final name. The temporary one has the same suffix.
+    """
+    partial = path.with_name(f".{path.stem}.partial{path.suffix}")
+    old = path.with_name(f".{path.stem}.old{path.suffix}")
+    shutil.rmtree(partial, ignore_errors=True)
+    try:
+        yield partial
+        for place in (*partial.rglob("*"), partial):
+            flush(place)
+        if path.exists():
+            shutil.rmtree(old, ignore_errors=True)
+            path.replace(old)
+        partial.replace(path)
+    except BaseException:
+        shutil.rmtree(partial, ignore_errors=True)
+        raise
+    flush(path.parent)
+    shutil.rmtree(old, ignore_errors=True)
 
 
 def write_whole(path: Path, content: bytes) -> None:
