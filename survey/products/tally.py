@@ -46,7 +46,8 @@ class ErrorTally:
         near = np.abs(steps) <= REACH
         places, counts = np.unique(steps[near].astype(np.intp) + REACH, return_counts=True)
         self._steps[places] += counts.astype(np.uint32)
-        self._beyond.append(errors[~near])
+        if not near.all():
+            self._beyond.append(errors[~near])
 
     @property
     def mean(self) -> float:
