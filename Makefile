@@ -13,7 +13,7 @@ help:
 	@echo "make check   format, lint, types and direction of imports"
 	@echo "make test    check, then all tests but the slow ones"
 	@echo "make slow    the slow tests"
-	@echo "make bench   how fast the engine and its kernels are: nothing else should run"
+	@echo "make bench   how fast engine, kernels and products are: nothing else should run"
 	@echo "make format  bring the code into its format"
 
 venv: $(READY)
@@ -45,6 +45,7 @@ slow: libraries $(READY)
 
 bench: $(READY)
 	$(BIN)/python tests/benchmarks/kernels.py
+	$(BIN)/python tests/benchmarks/products.py
 	$(BIN)/bathyflash bench
 
 format: $(READY)

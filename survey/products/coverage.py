@@ -22,7 +22,7 @@ FloatArray = NDArray[np.float64]
 OUTSIDE_AREA = -2
 GAP = -1
 GAP_CAUSE = "gap between frames"
-SEEN_RANK = 10**9
+SEEN_RANK = np.uint32(10**9)
 """Lifts a single pixel that saw the ground above any number that did not."""
 
 PLACES_AT_ONCE = 1 << 18
@@ -63,9 +63,9 @@ class SurveyedHull:
     def __init__(self) -> None:
         self._corners, self._waiting = np.zeros((0, 2)), [np.zeros((0, 2))]
 
-    def add(self, record: PixelRecord) -> None:
-        """Add a frame."""
-        self._waiting.append(looked_at(record)[0])
+    def add(self, places: FloatArray) -> None:
+        """Add the places of a frame (n, 2) [m]."""
+        self._waiting.append(places)
         if sum(len(places) for places in self._waiting) > PLACES_AT_ONCE:
             self._corners, self._waiting = self._merged(), []
 
@@ -95,7 +95,7 @@ def hull_of(records: Iterable[PixelRecord]) -> FloatArray:
     """Return the ring of `SurveyedHull` around all that several frames look at."""
     hull = SurveyedHull()
     for record in records:
-        hull.add(record)
+        hull.add(looked_at(record)[0])
     return hull.ring()
 
 
@@ -112,7 +112,7 @@ class CoverageTally:
     cell_size : float
         Side of a cell [m].
     reach : float
-        Half the diagonal of a pixel on the bottom [m]: what one pixel answers for.
+        How far one pixel answers for the bottom around it [m].
     """
 
     def __init__(self, *, survey_area: FloatArray, cell_size: float, reach: float) -> None:
@@ -144,8 +144,9 @@ class CoverageTally:
             north=part.north,
             cell_size=part.cell_size,
             reach=self._reach,
-        ).astype(np.int64)
-        near[list(SEEN)] += np.where(near[list(SEEN)] > 0, SEEN_RANK, 0)
+        )
+        for outcome in SEEN:
+            near[outcome][near[outcome] > 0] += SEEN_RANK
         commonest = near.argmax(axis=0).astype(np.int16)
         self._state[window] = np.where(near.any(axis=0), commonest, GAP)
 

@@ -17,11 +17,12 @@ from survey.cloud.points import PointClass, PointCloud
 from survey.flight.pose import Frame
 from survey.products.gps_time import adjusted_gps_time
 from survey.products.ply_file import require_finite, require_points
-from survey.products.writing import require_read_back, whole_file
+from survey.products.writing import ProductError, require_read_back, whole_file
 from terrain.map_frame import MapFrame
 
 if TYPE_CHECKING:
     import laspy
+    from pyproj import CRS
 
 COORDINATE_STEP = 0.001
 SCAN_ANGLE_STEP_DEG = 0.006
@@ -162,10 +163,17 @@ def _checksum(points: Any, before: int) -> int:
 
 
 def read_laz(path: Path, map_frame: MapFrame, *, start_utc: datetime) -> PointCloud:
-    """Read a cloud that `write_laz` wrote, in the local frame of ``map_frame``."""
+    """Read a cloud that `write_laz` wrote, in the local frame of ``map_frame``.
+
+    Raises
+    ------
+    ProductError
+        If the file has another CRS.
+    """
     import laspy
 
     las = laspy.read(str(path))
+    _require_crs(path, las.header.parse_crs(), map_frame)
 
     def place(prefix: str) -> NDArray[np.float64]:
         on_map = np.stack([np.asarray(las[f"{prefix}{axis}"]) for axis in "xyz"], axis=1)
@@ -193,6 +201,15 @@ def read_laz(path: Path, map_frame: MapFrame, *, start_utc: datetime) -> PointCl
         row=np.array(las.pixel_row),
         column=np.array(las.pixel_column),
     )
+
+
+def _require_crs(path: Path, found: CRS | None, map_frame: MapFrame) -> None:
+    parts = [] if found is None else [part.to_epsg() for part in found.sub_crs_list]
+    if parts != [map_frame.epsg, map_frame.vertical_epsg]:
+        raise ProductError(
+            f"{path}: CRS: {found.name if found else 'none'} instead of {map_frame.crs.name}. "
+            "Transform the cloud first"
+        )
 
 
 def _header(map_frame: MapFrame, start_utc: datetime) -> laspy.LasHeader:

@@ -38,6 +38,7 @@ from terrain.seabed import Seabed
 
 FloatArray = NDArray[np.float64]
 ReadFrame = Callable[[int], FrameResult]
+POINTS_OF_A_TILE = 400_000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,7 +82,7 @@ class ProductSettings:
 
     @property
     def reach(self) -> float:
-        """Half the diagonal of a pixel on the bottom, doubled for gaps between them [m]."""
+        """How far a pixel answers for the bottom around it: to its neighbour at the corner [m]."""
         return self.pixel_spacing * 2**0.5
 
 
@@ -155,18 +156,19 @@ def write_products(
     found["substrates"] = substrates.metrics(seabed.substrate_names)
     write_json(folder / "metrics.json", found)
     _write_tracks(folder, frames, map_frame, settings)
-    if has_triangles(overview.map()):
+    seen, covered = overview.map(), coverage.map()
+    if has_triangles(seen):
         write_bathymetry_glb(
-            folder / "bathymetry.glb", overview.map(), map_frame, water_level=settings.water_level
+            folder / "bathymetry.glb", seen, map_frame, water_level=settings.water_level
         )
-    write_coverage_geojson(folder / "coverage.geojson", coverage.map(), map_frame)
+    write_coverage_geojson(folder / "coverage.geojson", covered, map_frame)
     write_report(
         folder / "report.html",
         title=settings.title,
         description=settings.description,
         metrics=found,
-        grid=overview.map(),
-        coverage=coverage.map(),
+        grid=seen,
+        coverage=covered,
         errors=accuracy.bottom.errors,
         water_level=settings.water_level,
     )
@@ -199,6 +201,7 @@ def _parts(
             points=look.points,
             lattice=look.raster(cell_size=settings.grid),
             margin=max(settings.thinning, settings.reach) + settings.grid,
+            most=POINTS_OF_A_TILE,
         )
     )
     needed = [[frames[number].index for number in tile.frames] for tile in tiles]

@@ -123,6 +123,13 @@ def test_laz_round_trip(small_survey: Any, tmp_path: Path) -> None:
         )
 
 
+def test_a_cloud_of_another_crs_is_refused(small_survey: Any, tmp_path: Path) -> None:
+    path = write(tmp_path / "bottom.laz", small_survey)
+    elsewhere = replace(small_survey.map_frame, epsg=25833)
+    with pytest.raises(ProductError, match=r"CRS: ETRS89 .* zone 32N .* instead of ETRS89 .* 33N"):
+        read_laz(path, elsewhere, start_utc=small_survey.start_utc)
+
+
 def test_extra_bytes_are_described(small_survey: Any, tmp_path: Path) -> None:
     import laspy
 
