@@ -21,6 +21,7 @@ from survey.optics.water import WaterColumn
 from survey.products.run_products import ProductSettings
 from survey.scenario import components
 from survey.scenario.scenario import Scenario
+from survey.scenario.seabed_objects import cubes
 from survey.sensor.camera import Camera
 from survey.sensor.detector import Detector, Readings
 from survey.transport.engine import Engine
@@ -115,6 +116,8 @@ def prepare(scenario: Scenario) -> Mission:
             trajectory_files=scenario.navigation.trajectory_files,
             deviations=components.navigation(scenario).deviations,
             water=water,
+            order=scenario.mission.order,
+            cubes=cubes(scenario),
         ),
         raw_step=RAW_STEPS[scenario.processing.keep_waveforms],
     )

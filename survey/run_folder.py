@@ -56,7 +56,7 @@ class RunFolder:
         write_json(path / MANIFEST, manifest)
         write_whole(path / "scenario.toml", resolved.encode())
         (path / "frames").mkdir(exist_ok=True)
-        return cls(path=path, whole=dict(_whole_frames(path)))
+        return cls(path=path, whole=dict(whole_frames(path)))
 
     def frame_path(self, index: int) -> Path:
         """Return the place of a frame's file."""
@@ -131,17 +131,32 @@ def _require_same(path: Path, found: dict[str, Any], wanted: dict[str, Any]) -> 
         )
 
 
-def _whole_frames(path: Path) -> Iterator[tuple[int, str]]:
-    """Yield the frames whose file still is what the journal says."""
+def whole_frames(path: Path) -> Iterator[tuple[int, str]]:
+    """Yield the frames, and their hash, whose file still is what the journal says."""
+    for index, digest in _journal(path):
+        if _is_whole(path, index, digest):
+            yield index, digest
+
+
+def damaged_frames(path: Path) -> list[int]:
+    """Return the frames in the journal whose file is not there or has changed."""
+    noted = list(_journal(path))
+    whole = {index for index, digest in noted if _is_whole(path, index, digest)}
+    return sorted({index for index, _ in noted} - whole)
+
+
+def _is_whole(path: Path, index: int, digest: str) -> bool:
+    file = path / "frames" / f"{index:06d}.npz"
+    return file.exists() and _digest(file) == digest
+
+
+def _journal(path: Path) -> Iterator[tuple[int, str]]:
     journal = path / "journal.jsonl"
     if not journal.exists():
         return
     for line in journal.read_text(encoding="utf-8").splitlines():
         try:
             note = json.loads(line)
-            index, digest = int(note["frame"]), str(note["sha256"])
+            yield int(note["frame"]), str(note["sha256"])
         except (ValueError, KeyError, TypeError):
             continue
-        file = path / "frames" / f"{index:06d}.npz"
-        if file.exists() and _digest(file) == digest:
-            yield index, digest

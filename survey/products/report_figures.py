@@ -39,7 +39,7 @@ def depth_map(grid: ElevationGrid, *, water_level: float) -> bytes:
     from matplotlib import colormaps
 
     depth = water_level - grid.elevation
-    figure, axes = _map_axes(grid.cells)
+    figure, axes = map_axes(grid.cells)
     shallow, deep = depth_range(depth[np.isfinite(depth)])
     land = {"under": LAND} if shallow == 0.0 else {}
     colours = colormaps[COLOURS].with_extremes(**land)
@@ -54,7 +54,7 @@ def depth_map(grid: ElevationGrid, *, water_level: float) -> bytes:
     figure.colorbar(
         image, ax=axes, label="depth below water level [m]", extend="min" if land else "neither"
     )
-    return _png(figure)
+    return png(figure)
 
 
 def outcome_map(coverage: CoverageMap) -> bytes:
@@ -62,7 +62,7 @@ def outcome_map(coverage: CoverageMap) -> bytes:
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
-    figure, axes = _map_axes(coverage.cells)
+    figure, axes = map_axes(coverage.cells)
     inside = coverage.state != OUTSIDE_AREA
     handles = []
     for state, (words, colour) in STATE_LOOKS.items():
@@ -77,7 +77,7 @@ def outcome_map(coverage: CoverageMap) -> bytes:
                 interpolation="nearest",
             )
     figure.legend(handles=handles, loc="outside upper center", ncols=3, frameon=False)
-    return _png(figure)
+    return png(figure)
 
 
 def error_histogram(errors: NDArray[np.float64]) -> bytes:
@@ -91,10 +91,11 @@ def error_histogram(errors: NDArray[np.float64]) -> bytes:
     axes.set_xlabel("measured less true elevation [m]")
     axes.set_ylabel(f"bottom points per {200.0 * limit / HISTOGRAM_BINS:.2g} cm")
     axes.spines[["top", "right"]].set_visible(False)
-    return _png(figure)
+    return png(figure)
 
 
-def _map_axes(cells: CellGrid) -> tuple[Figure, Axes]:
+def map_axes(cells: CellGrid) -> tuple[Figure, Axes]:
+    """Return an empty map of the cells."""
     west, east, south, north = cells.extent
     figure, axes = _figure(height=float(np.clip(7.0 * (north - south) / (east - west), 2.6, 7.5)))
     axes.set_xlabel("easting [m]")
@@ -113,7 +114,8 @@ def _figure(*, height: float) -> tuple[Figure, Axes]:
     return figure, figure.add_subplot()
 
 
-def _png(figure: Figure) -> bytes:
+def png(figure: Figure) -> bytes:
+    """Return a figure as PNG, the same bytes every time."""
     buffer = BytesIO()
     figure.savefig(buffer, format="png", metadata={"Software": None})
     return buffer.getvalue()

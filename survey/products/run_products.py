@@ -11,12 +11,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import Outcome, PointClass, PointCloud
+from survey.cloud.points import Outcome, PixelRecord, PointClass, PointCloud
 from survey.cloud.stitch import stitched
 from survey.flight.pose import Frame
 from survey.optics.water import WaterColumn
 from survey.products.accuracy import BOTTOM_CLASSES, elevation_errors, metrics
-from survey.products.coverage import coverage_map, surveyed_hull, write_coverage_geojson
+from survey.products.coverage import (
+    CoverageMap,
+    coverage_map,
+    surveyed_hull,
+    write_coverage_geojson,
+)
 from survey.products.frame_file import FrameResult
 from survey.products.grids import grid_elevation, write_bathymetry_tif
 from survey.products.json_file import write_json
@@ -28,6 +33,9 @@ from survey.products.report import write_report
 from survey.products.substrates import substrate_metrics
 from survey.products.track_files import TrackFormat, write_trajectory_files
 from survey.products.trajectory_file import write_trajectory_csv
+from survey.products.verdict.features import Cube
+from survey.products.verdict.mission import Judged, judge_mission
+from survey.products.verdict.report import verdict_section
 from survey.products.writing import ProductError
 from terrain.seabed import Seabed
 
@@ -59,6 +67,10 @@ class ProductSettings:
         Standard deviations of the measured pose, see `Navigation.deviations`.
     water : WaterColumn
         Makes optical depths of depths.
+    order : str or None
+        Key of the order of S-44 that was asked for.
+    cubes : sequence of Cube
+        On the bottom, for the feature tests.
     """
 
     title: str
@@ -72,6 +84,8 @@ class ProductSettings:
     trajectory_files: Sequence[TrackFormat]
     deviations: tuple[float, ...]
     water: WaterColumn
+    order: str | None
+    cubes: Sequence[Cube]
 
 
 def write_products(
@@ -124,6 +138,9 @@ def write_products(
         water=settings.water,
     )
     found["substrates"] = substrate_metrics(bottom, results, seabed.substrate_names)
+    judged = _judged(bottom, records, coverage, seabed, settings)
+    found |= judged.metrics
+    judged.failures.write(folder / "failures.geojson", seabed.map_frame)
     write_json(folder / "metrics.json", found)
     write_report(
         folder / "report.html",
@@ -134,8 +151,28 @@ def write_products(
         coverage=coverage,
         errors=elevation_errors(bottom.select(np.isin(bottom.classification, BOTTOM_CLASSES))),
         water_level=settings.water_level,
+        verdict=verdict_section(judged),
     )
     return found
+
+
+def _judged(
+    bottom: PointCloud,
+    records: Sequence[PixelRecord],
+    coverage: CoverageMap,
+    seabed: Seabed,
+    settings: ProductSettings,
+) -> Judged:
+    return judge_mission(
+        [bottom],
+        records,
+        coverage,
+        seabed,
+        water_level=settings.water_level,
+        reach=settings.pixel_spacing * 2**0.5,
+        cubes=settings.cubes,
+        asked=settings.order,
+    )
 
 
 def _require_bottom(bottom: PointCloud, results: Sequence[FrameResult]) -> None:

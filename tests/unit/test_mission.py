@@ -29,7 +29,7 @@ from survey.sensor.detector import Readings
 PRODUCTS = {
     *("scenario.toml", "manifest.json", "journal.jsonl", "trajectory.csv", "bottom.laz"),
     *("water_surface.laz", "bottom.ply", "water_surface.ply", "bathymetry.tif", "bathymetry.glb"),
-    *("coverage.geojson", "metrics.json", "performance.json", "report.html"),
+    *("coverage.geojson", "failures.geojson", "metrics.json", "performance.json", "report.html"),
     *(f"frames/{number:06d}.npz" for number in range(3)),
 }
 DIFFERS_BY_RUN = {"performance.json", "journal.jsonl"}
