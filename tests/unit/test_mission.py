@@ -87,6 +87,9 @@ def test_a_mission_leaves_every_product_and_finds_the_seabed(
     assert abs(found["surface_bias_m"]) < 0.1
     assert (log.total, log.flown) == (3, {0, 1, 2})
     assert f"{found['points_bottom']} bottom points" in log.summary
+    assert set(found["s44"]["orders"]["special"]["criteria"]) > {"tvu", "feature_detection"}
+    assert "Secchi depths" in log.summary
+    assert "<h2>Verdict</h2>" in (run / "report.html").read_text()
 
 
 def test_same_bytes_for_any_workers_any_stops_and_any_damage(

@@ -30,6 +30,8 @@ from survey.scenario import components
 from survey.scenario.scenario import Scenario
 from survey.score.score import score_cloud
 from survey.score.truth import AIR, GROUND, OBJECT, SEABED, SURFACE, UNKNOWN, WITHIN, truth_at
+from terrain.foreign import cloud_reader
+from terrain.foreign.faults import ReaderError
 from terrain.generators import Ground, plane
 from terrain.map_frame import MapFrame
 from terrain.objects import cube, place
@@ -215,28 +217,30 @@ def test_the_command_prints_a_table_and_writes_all_of_it(run: Path, tmp_path: Pa
         written["benchmark"]["scenario_sha256"]
         == json.loads((run / "manifest.json").read_text())["scenario_sha256"]
     )
-    assert written == score_cloud(run / "bottom.laz", run)
+    assert written["all_depths"]["points"] == metrics(run)["points_bottom"]
+    assert written["by_depth"][0]["from_depth_m"] >= 2.0
 
 
 @pytest.mark.parametrize("order", ["<", ">"])
-def test_ply_of_either_byte_order_and_ascii(run: Path, tmp_path: Path, order: str) -> None:
-    table = columns(run)
-    types = [("x", f"{order}f8"), ("y", f"{order}f8"), ("z", f"{order}f8")]
+def test_ply_of_either_byte_order_and_ascii(tmp_path: Path, order: str) -> None:
+    table = np.array([[500000.123456789, 6000000.5, -3.25, 40.0], [500001.0, 6000002.0, -4.0, 7.0]])
+    types = [(axis, f"{order}f8") for axis in "xyz"]
     records = np.zeros(len(table), dtype=[*types, ("scalar_Classification", f"{order}f4")])
     for number, name in enumerate(records.dtype.names or ()):
         records[name] = table[:, number]
     kind = "little" if order == "<" else "big"
-    head = ["ply", f"format binary_{kind}_endian 1.0", f"element vertex {len(table)}"]
-    head += [f"property double {axis}" for axis in "xyz"]
-    head += ["property float scalar_Classification", "end_header", ""]
-    binary = tmp_path / "other.ply"
+    head = ["ply", f"format binary_{kind}_endian 1.0", "comment epsg 25832"]
+    head += [f"element vertex {len(table)}", *(f"property double {axis}" for axis in "xyz")]
+    head += ["property float scalar_Classification", "element face 0", "end_header", ""]
+    binary, text = tmp_path / "other.ply", tmp_path / "text.ply"
     binary.write_bytes("\n".join(head).encode() + records.tobytes())
-    text = tmp_path / "text.ply"
     rows = "\n".join(" ".join(f"{value:.17g}" for value in row) for row in table)
     text.write_text("\n".join(head).replace(f"binary_{kind}_endian", "ascii") + rows + "\n")
-    wanted = score_cloud(run / "bottom.ply", run)["all_depths"]
-    assert score_cloud(binary, run)["all_depths"] == wanted
-    assert score_cloud(text, run)["all_depths"] == wanted
+    for path in (binary, text):
+        found = cloud_reader.read_ply(str(path))
+        np.testing.assert_array_equal(found["points"], table[:, :3])
+        assert found["classification"].tolist() == [40, 7]
+        assert found["crs"] == "EPSG:25832"
 
 
 def refusal(path: Path, run: Path, *more: str) -> tuple[int, list[str]]:
@@ -276,7 +280,7 @@ def test_empty_and_unclassified_clouds(run: Path, tmp_path: Path) -> None:
     header = laspy.LasHeader(version="1.4", point_format=6)
     header.add_crs(CRS.from_epsg(25832))
     laspy.LasData(header).write(str(tmp_path / "none.las"))
-    assert "the cloud is empty" in refusal(tmp_path / "none.las", run)[1][0]
+    assert cloud_reader.read_las(str(tmp_path / "none.las"))["points"].shape == (0, 3)
     table[:, 3] = 9
     raw = csv(tmp_path / "raw.csv", table)
     status, lines = refusal(raw, run)
@@ -292,33 +296,43 @@ def test_empty_and_unclassified_clouds(run: Path, tmp_path: Path) -> None:
         ("500000.0,6000000.0,-3.0\n", "numbers, but no header"),
         ("x,y,z\n1,2,deep\n4,5\n", "line 2: z: 'deep' is no number"),
         ("x,y,z,class\n1,2,3,300\n", "class 300, but LAS classes are 0 to 255"),
-        ("x,y,z\n1,2,nan\n", "point 0: not finite"),
         ("", "no column x"),
     ],
 )
-def test_tables_that_are_none(run: Path, tmp_path: Path, content: str, words: str) -> None:
+def test_tables_that_are_none(tmp_path: Path, content: str, words: str) -> None:
     path = tmp_path / "bad.csv"
     path.write_text(content)
-    status, lines = refusal(path, run)
-    assert status == 2
-    assert any(words in line for line in lines)
-    assert all(line.startswith(str(path)) for line in lines)
+    with pytest.raises(ReaderError) as refused:
+        cloud_reader.read_csv(str(path))
+    assert any(words in fault for fault in refused.value.faults)
+
+
+@pytest.mark.parametrize("mark", [";", "\t", " "])
+def test_tables_with_other_separators_and_columns(tmp_path: Path, mark: str) -> None:
+    path = tmp_path / "cloud.txt"
+    rows = (("time", "Easting", "class", "N", "Height"), ("9:30", "1.5", "40", "2.5", "-3.0"))
+    path.write_text("\n".join(mark.join(row) for row in rows) + "\n")
+    found = cloud_reader.read_csv(str(path))
+    assert found["points"].tolist() == [[1.5, 2.5, -3.0]]
+    assert found["classification"].tolist() == [40]
 
 
 def test_files_that_are_none(run: Path, tmp_path: Path) -> None:
     for name, words in (
         ("bad.las", "LAS"),
-        ("bad.laz", "LAS"),
-        ("bad.ply", "header: not that of a PLY file"),
         ("bad.dxf", "not a cloud"),
+        ("nan.csv", "point 0: not finite"),
     ):
-        (tmp_path / name).write_bytes(b"plainly nothing of the kind")
+        (tmp_path / name).write_text("x,y,z\n1,2,nan\n")
         status, lines = refusal(tmp_path / name, run)
-        assert (status, len(lines)) == (2, 1)
-        assert words in lines[0]
-    cut = (run / "bottom.ply").read_bytes()[:-100]
-    (tmp_path / "cut.ply").write_bytes(cut)
-    assert "announced" in refusal(tmp_path / "cut.ply", run)[1][0]
+        assert (status, len([line for line in lines if words in line])) == (2, 1)
+    for content, words in (
+        (b"plainly nothing of the kind", "not that of a PLY file"),
+        ((run / "bottom.ply").read_bytes()[:-100], "announced"),
+    ):
+        (tmp_path / "bad.ply").write_bytes(content)
+        with pytest.raises(ReaderError, match=words):
+            cloud_reader.read_ply(str(tmp_path / "bad.ply"))
 
 
 def test_what_is_wrong_with_run_and_cloud_is_told_at_once(run: Path, tmp_path: Path) -> None:

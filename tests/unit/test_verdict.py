@@ -224,12 +224,14 @@ def test_a_cube_is_found_by_three_points_that_stand_out(small_survey: Any) -> No
 
 
 def test_cubes_of_another_size_cannot_pass_an_order(small_survey: Any) -> None:
-    """A found cube of 2 m says nothing of 1 m; one of 1 m nothing of 2 m; a lost one fails both."""
+    """A found cube of 2 m says nothing of 1 m; one of 1 m tells of 2 m; a lost one of 2 m fails."""
     large = on_cube(small_survey, Cube(side=2.0, east=3.0, north=4.0), [2.0, 2.0, 2.0])
     assert judge_features(large, ORDERS["special"], water_level=0.0).result == "not assessable"
     assert judge_features(large, ORDERS["order_1a"], water_level=0.0).result == "pass"
     small = on_cube(small_survey, Cube(side=1.0, east=3.0, north=4.0), [1.0, 1.0, 1.0])
-    assert judge_features(small, ORDERS["order_1a"], water_level=0.0).result == "not assessable"
+    assert judge_features(small, ORDERS["order_1a"], water_level=0.0).result == "pass"
+    unseen = on_cube(small_survey, Cube(side=1.0, east=3.0, north=4.0), [0.1])
+    assert judge_features(unseen, ORDERS["order_1a"], water_level=0.0).result == "not assessable"
     lost = on_cube(small_survey, Cube(side=2.0, east=3.0, north=4.0), [0.1, 0.0])
     assert judge_features(lost, ORDERS["special"], water_level=0.0).result == "fail"
     assert judge_features([], ORDERS["special"], water_level=0.0).result == "not assessable"

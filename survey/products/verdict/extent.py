@@ -82,8 +82,9 @@ def judge_features(cubes: Sequence[FoundCube], order: Order, *, water_level: flo
     """Judge whether cubes of the order's size, or larger, stand out of the cloud.
 
     A cube is found when at least `ENOUGH_POINTS` bottom points in its outline lie above half its
-    height. Every cube must be found that is no smaller than the order's; without one of the order's
-    own size, up to `OWN_SIZE` times, larger ones can fail the order but not pass it.
+    height. Every cube must be found that is no smaller than the order's. One of the order's own
+    size, up to `OWN_SIZE` times, or a smaller one must be among those found: larger ones can fail
+    the order but not pass it.
 
     Parameters
     ----------
@@ -95,25 +96,26 @@ def judge_features(cubes: Sequence[FoundCube], order: Order, *, water_level: flo
     """
     if order.feature is None:
         return not_asked()
-    judged = [(cube, order.feature_at(water_level - cube.bed) or 0.0) for cube in cubes]
-    judged = [(cube, size) for cube, size in judged if cube.cube.side >= size - 1e-9]
-    details = {"cubes": [_as_json(cube, order, water_level) for cube, _ in judged]}
-    lost = [cube for cube, _ in judged if not cube.found]
-    own = [cube for cube, size in judged if cube.cube.side <= OWN_SIZE * size]
-    found = len(judged) - len(lost)
-    share = found / len(judged) if judged else None
+    sized = [(cube, order.feature_at(water_level - cube.bed) or 0.0) for cube in cubes]
+    asked = [cube for cube, size in sized if cube.cube.side >= size - 1e-9]
+    speak = [cube for cube, size in sized if cube.found and cube.cube.side <= OWN_SIZE * size]
+    judged = asked + [cube for cube in speak if cube not in asked]
+    details = {"cubes": [_as_json(cube, order, water_level) for cube in judged]}
+    lost = [cube for cube in judged if not cube.found]
     if lost:
         few = ", ".join(f"{cube.cube.side:g} m with {_points(cube)}" for cube in lost)
         reason = f"{len(lost)} of {len(judged)} cubes lost: {few} on it, {ENOUGH_POINTS} are asked"
+        share = 1.0 - len(lost) / len(judged)
         return Criterion(result="fail", figure=share, limit=1.0, reason=reason, details=details)
-    if not own:
+    if not speak:
         reason = f"no cube of {order.feature:g} m lies in the survey area"
         return Criterion(
             result="not assessable", figure=None, limit=1.0, reason=reason, details=details
         )
-    sides = ", ".join(f"{cube.cube.side:g} m by {_points(cube)}" for cube, _ in judged)
-    reason = f"cubes found: {sides}"
-    return Criterion(result="pass", figure=share, limit=1.0, reason=reason, details=details)
+    sides = ", ".join(f"{cube.cube.side:g} m by {_points(cube)}" for cube in judged)
+    return Criterion(
+        result="pass", figure=1.0, limit=1.0, reason=f"cubes found: {sides}", details=details
+    )
 
 
 def _points(cube: FoundCube) -> str:

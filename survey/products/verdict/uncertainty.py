@@ -68,10 +68,10 @@ def _range(
 
 
 def _reason(worst: dict[str, Any], failed: list[dict[str, Any]], kind: Kind) -> str:
-    what = "of depth" if kind == "tvu" else "of place"
+    what = "depth" if kind == "tvu" else "place"
     text = (
         f"at {depth_range(worst)} {percent(worst['share'])} of {worst['points']} points lie within "
-        f"{worst['limit_m']:.2f} m {what}, the worst of all depths"
+        f"{worst['limit_m']:.2f} m of the true {what}"
     )
     if not failed:
         return text
