@@ -102,7 +102,7 @@ def map_axes(cells: CellGrid) -> tuple[Figure, Axes]:
     axes.set_ylabel("northing [m]")
     axes.set_aspect("equal")
     axes.ticklabel_format(useOffset=False, style="plain")
-    axes.locator_params(axis="x", nbins=5)
+    axes.locator_params(axis="x", nbins=5 if east - west > 0.5 * (north - south) else 2)
     axes.set_facecolor("#f4f4f4")
     return figure, axes
 

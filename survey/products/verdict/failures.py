@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import PointCloud
+from survey.cloud.points import Outcome, PointCloud
 from survey.cloud.truth import FALSE_BOTTOM_ERROR
 from survey.products.coverage import GAP_CAUSE, cell_polygons, map_feature
 from survey.products.json_file import json_bytes
@@ -94,6 +94,7 @@ class FailureCells:
         seen_once = missing & (self.passes.frames > 0)
         rules = (
             (~self.passes.wet, OUTSIDE),
+            (missing & (hole_state == Outcome.FALSE_BOTTOM), FALSE_BOTTOM),
             (missing & ~seen_once, FIRST_HOLE + 1 + hole_state),
             ((tvu > allowed) & (2 * false >= tvu), FALSE_BOTTOM),
             (tvu > allowed, DEPTH_ERROR),
@@ -133,8 +134,6 @@ class FailureMap:
         """Return the name of what is wrong."""
         if state < FIRST_HOLE:
             return CAUSES[state]
-        from survey.cloud.points import Outcome
-
         number = state - FIRST_HOLE - 1
         return GAP_CAUSE if number < 0 else Outcome(number).name.lower().replace("_", " ")
 

@@ -46,5 +46,7 @@ def _table(criteria: Mapping[str, Any], names: Mapping[str, str]) -> Iterator[st
 
 
 def _other(found: Mapping[str, Any]) -> str:
-    reasons = "; ".join(found["criteria"][name]["reason"] for name in found["failed"])
+    reasons = "; ".join(
+        dict.fromkeys(found["criteria"][name]["reason"] for name in found["failed"])
+    )
     return escape(f"{verdict_sentence(found)}{': ' if reasons else ''}{reasons}.")
