@@ -12,7 +12,8 @@ import numpy as np
 
 from survey.cloud.points import PixelRecord
 from survey.products.frame_file import read_frame
-from survey.run_folder import MANIFEST, damaged_frames, whole_frames
+from survey.run_folder import noted_frames
+from survey.run_identity import MANIFEST, SCENARIO
 from survey.scenario import components
 from survey.scenario.load import load_scenario
 from survey.scenario.scenario import Scenario
@@ -53,7 +54,7 @@ class ScoredRun:
         ScoreError
             With every fault: no run, no frames, frames that are half-written.
         """
-        if not (folder / MANIFEST).is_file() or not (folder / "scenario.toml").is_file():
+        if not (folder / MANIFEST).is_file() or not (folder / SCENARIO).is_file():
             if not folder.is_dir():
                 raise ScoreError([f"{folder}: no such folder"], only_missing_files=True)
             raise ScoreError([f"{folder}: not a run folder. Make one with bathyflash run"])
@@ -62,16 +63,17 @@ class ScoredRun:
             known = {key: manifest[key] for key in IDENTITY}
         except (ValueError, KeyError, TypeError):
             raise ScoreError([f"{folder / MANIFEST}: not that of a run. Fly it anew"]) from None
+        whole, spoilt = noted_frames(folder)
         faults = [
-            f"{folder}: frame {index}: half-written or changed. Run the same command again"
-            for index in damaged_frames(folder)
+            f"{folder}: frame {index}: {why}. Run the same command again"
+            for index, why in sorted(spoilt.items())
         ]
-        frames = tuple(sorted(dict(whole_frames(folder))))
+        frames = tuple(sorted(whole))
         if not frames and not faults:
             faults.append(f"{folder}: no frame was flown. Run it first")
         if faults:
             raise ScoreError(faults)
-        scenario = load_scenario(folder / "scenario.toml")
+        scenario = load_scenario(folder / SCENARIO)
         return cls(folder=folder, scenario=scenario, manifest=known, frames=frames)
 
     @property

@@ -66,7 +66,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
         kept.keep(frame.index, seen(scenario, seabed, frame))
     write_products(
         kept.path,
-        results=kept.read([frame.index for frame in flashes]),
+        read=kept.frame,
         frames=flashes,
         seabed=seabed,
         settings=product_settings(scenario),
@@ -343,8 +343,8 @@ def test_what_is_wrong_with_run_and_cloud_is_told_at_once(run: Path, tmp_path: P
     assert status == 2
     assert [line.split(": ", 1)[1].split(".")[0] for line in lines] == [
         "no such file",
-        "frame 0: half-written or changed",
-        "frame 1: half-written or changed",
+        "frame 0: its file is not what was written",
+        "frame 1: its file is gone",
     ]
     (broken / "journal.jsonl").write_text("")
     assert "no frame was flown" in refusal(run / "bottom.ply", broken)[1][0]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -14,14 +15,23 @@ from survey.cloud.points import Outcome, PixelRecord, PointCloud
 from survey.optics.water import WaterColumn, petzold_water
 from survey.optics.water.apparent import diffuse_attenuation, secchi_depth_of, tyler_secchi_depth
 from survey.products.cells import CellGrid
-from survey.products.coverage import GAP, OUTSIDE_AREA, CoverageMap, coverage_map, surveyed_hull
+from survey.products.coverage import (
+    GAP,
+    OUTSIDE_AREA,
+    CoverageMap,
+    CoverageTally,
+    hull_of,
+    looked_at,
+)
+from survey.products.map_tiles import MapTile
 from survey.products.standards import norwegian_rules, orders
 from survey.products.standards.tables import values_of
+from survey.products.tile_points import TilePoints
 from survey.products.verdict.extent import judge_coverage, judge_features
 from survey.products.verdict.failure_picture import failure_picture
 from survey.products.verdict.features import Cube, CubeTally
-from survey.products.verdict.mission import Judged, judge_mission
-from survey.products.verdict.passes import Passes, count_passes
+from survey.products.verdict.mission import Judged, VerdictTally
+from survey.products.verdict.passes import Passes, PassTally
 from survey.products.verdict.report import verdict_section
 from survey.products.verdict.tally import ErrorTally, interval, percentile
 from survey.products.verdict.uncertainty import judge_errors
@@ -141,19 +151,32 @@ def test_interval_leaves_a_fortieth_on_either_side() -> None:
 def test_passes_are_counted_as_by_hand(small_survey: Any) -> None:
     """Against the distance from every centre to every pixel."""
     cells = CellGrid.covering(np.array([[0.0, 0.0], [90.0, 60.0]]), cell_size=3.0)
-    records, origin, reach = small_survey.records[:4], np.array([-20.0, 10.0, 0.0]), 4.4
+    places, outcomes, flash = pixels(small_survey.records[:4])
+    places, reach = places - [20.0, -10.0], 4.4
     wanted = np.zeros(cells.shape, dtype=int)
-    for record in records:
-        seen = np.isin(record.outcome, (Outcome.FOUND, Outcome.DRY))
-        places = record.true_position[seen][:, :2] + origin[:2]
-        apart = np.linalg.norm(cells.centres()[:, :, None] - places, axis=-1)
+    for number in range(4):
+        seen = np.isin(outcomes, (Outcome.FOUND, Outcome.DRY)) & (flash == number)
+        apart = np.linalg.norm(cells.centres()[:, :, None] - places[seen], axis=-1)
         wanted += (apart <= reach).any(axis=-1)
     assert wanted.max() >= 1
-    counted = count_passes(records, cells, origin=origin, reach=reach)
-    np.testing.assert_array_equal(counted, wanted)
+    whole, parts = (PassTally(cells=cells, reach=reach) for _ in range(2))
+    whole.add(places, outcomes, flash)
+    for columns in (slice(0, 11), slice(11, None)):
+        part = cells.part((slice(0, cells.rows), slice(*columns.indices(cells.columns)[:2])))
+        parts.add(places, outcomes, flash, part)
+    np.testing.assert_array_equal(whole.frames, wanted)
+    np.testing.assert_array_equal(parts.frames, wanted)
 
 
-def area(frames: NDArray[np.int32], *, cell: float = 0.5) -> tuple[Passes, CoverageMap]:
+def pixels(records: list[PixelRecord]) -> tuple[FloatArray, Any, Any]:
+    """Return where the pixels of frames look, what became of the bottom, and which frame it was."""
+    parts = [looked_at(record) for record in records]
+    flash = np.repeat(np.arange(len(parts)), [len(places) for places, _ in parts])
+    places, outcomes = zip(*parts, strict=True)
+    return np.concatenate(places), np.concatenate(outcomes), flash
+
+
+def area(frames: NDArray[np.uint16], *, cell: float = 0.5) -> tuple[Passes, CoverageMap]:
     """Return a wet survey area seen so often, its unseen cells gaps."""
     rows, columns = frames.shape
     cells = CellGrid(west=0.0, north=cell * rows, cell_size=cell, rows=rows, columns=columns)
@@ -163,7 +186,7 @@ def area(frames: NDArray[np.int32], *, cell: float = 0.5) -> tuple[Passes, Cover
 
 
 def test_full_coverage_bears_gaps_in_which_no_cube_has_room() -> None:
-    frames = np.full((20, 20), 2, dtype=np.int32)
+    frames = np.full((20, 20), 2, dtype=np.uint16)
     frames[4, 3:9] = 0
     passes, coverage = area(frames)
     narrow = judge_coverage(passes, coverage, asked=1.0, hole=1.0)
@@ -178,7 +201,7 @@ def test_full_coverage_bears_gaps_in_which_no_cube_has_room() -> None:
 
 
 def test_exclusive_order_asks_every_place_twice() -> None:
-    frames = np.full((20, 20), 2, dtype=np.int32)
+    frames = np.full((20, 20), 2, dtype=np.uint16)
     frames[:, :5] = 1
     found = judge_coverage(*area(frames), asked=2.0, hole=0.5)
     assert (found.result, found.figure) == ("fail", 0.75)
@@ -186,7 +209,7 @@ def test_exclusive_order_asks_every_place_twice() -> None:
 
 
 def test_an_area_without_water_is_not_assessable() -> None:
-    passes, coverage = area(np.ones((2, 2), dtype=np.int32))
+    passes, coverage = area(np.ones((2, 2), dtype=np.uint16))
     dry = replace(passes, wet=np.zeros((2, 2), dtype=np.bool_))
     assert judge_coverage(dry, coverage, asked=1.0, hole=1.0).result == "not assessable"
 
@@ -238,21 +261,38 @@ def test_cubes_of_another_size_cannot_pass_an_order(small_survey: Any) -> None:
     assert judge_features([], ORDERS["order_2"], water_level=0.0).result == "pass"
 
 
-def judged(survey: Any, *, bottom: PointCloud | None = None, **changes: Any) -> Judged:
-    given: dict[str, Any] = {"cubes": [], "asked": None} | changes
-    records: list[PixelRecord] = survey.records
-    coverage = coverage_map(
-        records, survey.map_frame, survey_area=surveyed_hull(records), cell_size=8.0, reach=9.1
-    )
-    return judge_mission(
-        [survey.bottom if bottom is None else bottom],
-        records,
-        coverage,
-        survey,
+def judged(
+    survey: Any,
+    *,
+    bottom: PointCloud | None = None,
+    cubes: Sequence[Cube] = (),
+    asked: str | None = None,
+) -> Judged:
+    """Return the verdict over a survey's hull in cells of 8 m, as one tile."""
+    places, outcomes, flash = pixels(survey.records)
+    places = places + survey.map_frame.origin[:2]
+    area = hull_of(survey.records) + survey.map_frame.origin[:2]
+    coverage = CoverageTally(survey_area=area, cell_size=8.0, reach=9.1)
+    coverage.add(places, outcomes)
+    tally = VerdictTally(
+        cells=coverage.cells,
+        seabed=survey,
         water_level=survey.water_level,
         reach=9.1,
-        **given,
+        cubes=cubes,
     )
+    west, east, south, north = coverage.cells.extent
+    borders = {"west": west, "south": south, "east": east, "north": north, "margin": 0.0}
+    part = TilePoints(
+        tile=MapTile(cells=coverage.cells, frames=np.arange(32), **borders),
+        bottom=survey.bottom if bottom is None else bottom,
+        surface=survey.surface,
+        looked_at=places,
+        outcomes=outcomes,
+        flash=flash,
+    )
+    tally.add(part)
+    return tally.judged(coverage.map(), asked=asked)
 
 
 def test_a_survey_passes_as_strict_an_order_as_it_can(small_survey: Any) -> None:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from survey.cloud.points import Outcome, PointCloud
 from survey.cloud.truth import FALSE_BOTTOM_ERROR
+from survey.products.cells import CellGrid
 from survey.products.coverage import GAP_CAUSE, cell_polygons, map_feature
 from survey.products.json_file import json_bytes
 from survey.products.standards import Order
@@ -22,6 +23,7 @@ from survey.products.verdict.tally import BOTTOM, errors_of
 from survey.products.writing import write_whole
 from terrain.map_frame import MapFrame
 
+FloatArray = NDArray[np.float64]
 MEETS, OUTSIDE = 0, -1
 CAUSES = (
     "",
@@ -37,12 +39,11 @@ FIRST_HOLE = len(CAUSES)
 
 @dataclass(kw_only=True)
 class FailureCells:
-    """Bottom points by cells of the survey area, and those outside an order's limits.
+    """Cells of the survey area in which points lie outside an order's limits.
 
     Parameters
     ----------
-    passes : Passes
-        Whose cells they are.
+    cells : CellGrid
     order : Order
     origin : array (3,)
         Of the clouds' local frame on the map [m].
@@ -50,60 +51,65 @@ class FailureCells:
         [m].
     """
 
-    passes: Passes
+    cells: CellGrid
     order: Order
-    origin: NDArray[np.float64]
+    origin: FloatArray
     water_level: float
-    counts: dict[str, NDArray[np.int64]] = field(default_factory=dict)
+    wrong: NDArray[np.uint8] = field(init=False)
 
-    def add(self, cloud: PointCloud) -> None:
-        """Count the bottom points of a cloud."""
-        cells = self.passes.cells
+    def __post_init__(self) -> None:
+        self.wrong = np.zeros(self.cells.shape, dtype=np.uint8)
+
+    def add(self, cloud: PointCloud, cells: CellGrid | None = None) -> None:
+        """Decide on some cells, by default all, with all points in them."""
+        window = self.cells.window(cells or self.cells)
+        part = self.cells.part(window)
         cloud = cloud.select(
             np.isin(cloud.classification, BOTTOM) & np.isfinite(cloud.true_elevation)
         )
         on_map = cloud.position + self.origin
-        here = cells.contains(on_map)
-        cloud, cell = cloud.select(here), cells.index_of(on_map[here])
+        here = part.contains(on_map)
+        cloud, cell = cloud.select(here), part.index_of(on_map[here])
         error, aside = errors_of(cloud)
         depth = np.maximum(self.water_level - cloud.true_elevation, 0.0)
-        for name, which in (
-            ("points", np.ones(len(cloud), dtype=np.bool_)),
-            ("tvu", np.abs(error) > self.order.tvu(depth)),
-            ("false", np.abs(error) > FALSE_BOTTOM_ERROR),
-            ("thu", aside > self.order.thu(depth)),
-        ):
-            added = np.bincount(cell[which], minlength=cells.rows * cells.columns)
-            self.counts[name] = self.counts.get(name, 0) + added
 
-    def state(self, missing: NDArray[np.bool_], hole_state: NDArray[np.int16]) -> NDArray[np.int16]:
+        def counted(which: NDArray[np.bool_]) -> NDArray[np.intp]:
+            return np.bincount(cell[which], minlength=part.rows * part.columns)
+
+        allowed = (1.0 - WITHIN) * counted(np.ones(len(cloud), dtype=np.bool_))
+        tvu = counted(np.abs(error) > self.order.tvu(depth))
+        thu = counted(aside > self.order.thu(depth))
+        false = counted(np.abs(error) > FALSE_BOTTOM_ERROR)
+        wrong = np.select(
+            [(tvu > allowed) & (2 * false >= tvu), tvu > allowed, thu > allowed],
+            [FALSE_BOTTOM, DEPTH_ERROR, PLACE_ERROR],
+            MEETS,
+        )
+        self.wrong[window] = wrong.reshape(part.shape)
+
+    def state(
+        self, passes: Passes, missing: NDArray[np.bool_], hole_state: NDArray[np.int16]
+    ) -> NDArray[np.int16]:
         """Return what is wrong in each cell (rows, columns): an index of `CAUSES` or a hole.
 
         Parameters
         ----------
+        passes : Passes
         missing : array of bool
             Cells that were not seen as often as asked.
         hole_state : array of int16
             State of the coverage map.
         """
-        shape = self.passes.cells.shape
-        points, tvu, false, thu = (
-            self.counts[name].reshape(shape) for name in ("points", "tvu", "false", "thu")
-        )
-        allowed = (1.0 - WITHIN) * points
-        seen_once = missing & (self.passes.frames > 0)
+        seen_once = missing & (passes.frames > 0)
         rules = (
-            (~self.passes.wet, OUTSIDE),
-            (missing & (hole_state == Outcome.FALSE_BOTTOM), FALSE_BOTTOM),
-            (missing & ~seen_once, FIRST_HOLE + 1 + hole_state),
-            ((tvu > allowed) & (2 * false >= tvu), FALSE_BOTTOM),
-            (tvu > allowed, DEPTH_ERROR),
-            (thu > allowed, PLACE_ERROR),
-            (seen_once, TOO_FEW_TIMES),
+            (~passes.wet, np.int16(OUTSIDE)),
+            (missing & (hole_state == Outcome.FALSE_BOTTOM), np.int16(FALSE_BOTTOM)),
+            (missing & ~seen_once, hole_state + np.int16(FIRST_HOLE + 1)),
+            (self.wrong != MEETS, self.wrong.astype(np.int16)),
+            (seen_once, np.int16(TOO_FEW_TIMES)),
         )
-        return np.select(
-            [rule for rule, _ in rules], [np.int16(state) for _, state in rules], MEETS
-        ).astype(np.int16)
+        state = np.select([rule for rule, _ in rules], [name for _, name in rules], MEETS)
+        return state.astype(np.int16)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from survey.products.coverage import OUTSIDE_AREA, CoverageMap
 from survey.products.standards import NorwegianRules, Order, norwegian_rules, orders
@@ -14,7 +15,7 @@ from survey.products.standards.orders import s44_title
 from survey.products.verdict.criterion import Criterion, percent, verdict
 from survey.products.verdict.density import DensityTally
 from survey.products.verdict.extent import judge_coverage, judge_features
-from survey.products.verdict.features import ElevationAt, FoundCube
+from survey.products.verdict.features import FoundCube
 from survey.products.verdict.passes import Passes
 from survey.products.verdict.tally import ErrorTally
 from survey.products.verdict.uncertainty import judge_errors
@@ -33,8 +34,8 @@ class Evidence:
     cubes : sequence of FoundCube
         Those in the survey area, under water.
     density : DensityTally
-    elevation_at : callable
-        True elevation at local x, y: ``Seabed.elevation_at``.
+    density_depth : array (rows, columns)
+        True depth of its cells [m]; nan outside the survey area.
     water_level : float
         [m].
     """
@@ -44,7 +45,7 @@ class Evidence:
     coverage: CoverageMap
     cubes: Sequence[FoundCube]
     density: DensityTally
-    elevation_at: ElevationAt
+    density_depth: NDArray[np.float32]
     water_level: float
 
 
@@ -93,7 +94,7 @@ def judge_norway(evidence: Evidence) -> dict[str, Any]:
 
 
 def _density(evidence: Evidence, rules: NorwegianRules) -> Criterion:
-    depth = evidence.density.depths(evidence.elevation_at, water_level=evidence.water_level)
+    depth = evidence.density_depth
     dense = evidence.density.density() >= rules.density
     judged = (depth >= rules.least_depth) & (depth <= rules.largest_depth)
     at_all_depths = percent(float(dense[depth > 0.0].mean())) if (depth > 0.0).any() else "none"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil
 from typing import Any
@@ -10,19 +10,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import PixelRecord, PointCloud
 from survey.products.cells import CellGrid
 from survey.products.coverage import OUTSIDE_AREA, CoverageMap
 from survey.products.standards import Order, norwegian_rules, orders
+from survey.products.tile_points import TilePoints
 from survey.products.verdict.density import DensityTally
 from survey.products.verdict.failures import FailureCells, FailureMap
 from survey.products.verdict.features import Cube, CubeTally
 from survey.products.verdict.judge import Evidence, cubes_in_area, judge_norway, judge_s44
-from survey.products.verdict.passes import Passes, count_passes
+from survey.products.verdict.passes import Passes, PassTally
 from survey.products.verdict.tally import ErrorTally
 from terrain.seabed import Seabed
 
 FloatArray = NDArray[np.float64]
+CELLS_AT_ONCE = 1 << 20
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,27 +42,13 @@ class Judged:
     failures: FailureMap
 
 
-def judge_mission(
-    clouds: Iterable[PointCloud],
-    records: Iterable[PixelRecord],
-    coverage: CoverageMap,
-    seabed: Seabed,
-    *,
-    water_level: float,
-    reach: float,
-    cubes: Sequence[Cube],
-    asked: str | None,
-) -> Judged:
-    """Judge a mission by every order of S-44 and by the Norwegian rules.
+class VerdictTally:
+    """Collects what is judged, tile by tile of the map.
 
     Parameters
     ----------
-    clouds : iterable of PointCloud
-        The stitched bottom cloud, in parts that are seen one at a time.
-    records : iterable of PixelRecord
-        One a frame, seen one at a time.
-    coverage : CoverageMap
-        Of the survey area.
+    cells : CellGrid
+        Of the coverage map.
     seabed : Seabed
         The truth.
     water_level : float
@@ -70,62 +57,101 @@ def judge_mission(
         Distance that a pixel answers for [m], as for the coverage map.
     cubes : sequence of Cube
         On the bottom, in the local frame.
-    asked : str or None
-        Key of the order that was asked for.
     """
-    origin = seabed.map_frame.origin
-    passes = Passes(
-        cells=coverage.cells,
-        wet=_wet(coverage, seabed, water_level),
-        frames=count_passes(records, coverage.cells, origin=origin, reach=reach),
-    )
-    errors = ErrorTally(orders=list(orders().values()))
-    features = CubeTally(cubes=cubes, elevation_at=seabed.elevation_at)
-    density = _density(coverage, origin)
-    failing = {
-        key: FailureCells(passes=passes, order=order, origin=origin, water_level=water_level)
-        for key, order in orders().items()
-    }
-    for cloud in clouds:
-        errors.add(cloud, water_level=water_level)
-        features.add(cloud)
-        density.add(cloud)
-        for cells in failing.values():
-            cells.add(cloud)
-    evidence = Evidence(
-        errors=errors,
-        passes=passes,
-        coverage=coverage,
-        cubes=cubes_in_area(features.found(), coverage, origin, water_level),
-        density=density,
-        elevation_at=seabed.elevation_at,
-        water_level=water_level,
-    )
-    s44 = judge_s44(evidence, asked=asked)
-    order = orders()[asked or _least_strict_failure(s44)]
-    return Judged(
-        metrics={"s44": s44, "norwegian_alb": judge_norway(evidence)},
-        failures=_failures(failing[order.key], order, evidence),
-    )
+
+    def __init__(
+        self,
+        *,
+        cells: CellGrid,
+        seabed: Seabed,
+        water_level: float,
+        reach: float,
+        cubes: Sequence[Cube],
+    ) -> None:
+        origin = seabed.map_frame.origin
+        self._seabed, self._water_level = seabed, water_level
+        self._errors = ErrorTally(orders=list(orders().values()))
+        self._passes = PassTally(cells=cells, reach=reach)
+        self._cubes = CubeTally(cubes=cubes, elevation_at=seabed.elevation_at)
+        self._density = DensityTally(cells=_local_cells(cells, origin))
+        self._failing = {
+            key: FailureCells(cells=cells, order=order, origin=origin, water_level=water_level)
+            for key, order in orders().items()
+        }
+
+    def add(self, part: TilePoints) -> None:
+        """Add a tile: its stitched bottom points, and where its pixels looked."""
+        cells = part.tile.cells
+        self._errors.add(part.bottom, water_level=self._water_level)
+        self._cubes.add(part.bottom)
+        self._density.add(part.bottom)
+        self._passes.add(part.looked_at, part.outcomes, part.flash, cells)
+        for failing in self._failing.values():
+            failing.add(part.bottom, cells)
+
+    def judged(self, coverage: CoverageMap, *, asked: str | None) -> Judged:
+        """Return the verdict by every order of S-44 and by the Norwegian rules.
+
+        Parameters
+        ----------
+        coverage : CoverageMap
+            Of the same cells, finished.
+        asked : str or None
+            Key of the order that was asked for.
+        """
+        evidence = self._evidence(coverage)
+        s44 = judge_s44(evidence, asked=asked)
+        order = orders()[asked or _least_strict_failure(s44)]
+        return Judged(
+            metrics={"s44": s44, "norwegian_alb": judge_norway(evidence)},
+            failures=_failures(self._failing[order.key], order, evidence),
+        )
+
+    def _evidence(self, coverage: CoverageMap) -> Evidence:
+        origin, level = self._seabed.map_frame.origin, self._water_level
+        inside = coverage.state != OUTSIDE_AREA
+        depth = self._depths(coverage.cells, inside, origin[:2])
+        cells = self._density.cells
+        return Evidence(
+            errors=self._errors,
+            passes=Passes(cells=coverage.cells, wet=depth > 0.0, frames=self._passes.frames),
+            coverage=coverage,
+            cubes=cubes_in_area(self._cubes.found(), coverage, origin, level),
+            density=self._density,
+            density_depth=self._depths(cells, _within(cells, coverage, origin), np.zeros(2)),
+            water_level=level,
+        )
+
+    def _depths(
+        self, cells: CellGrid, which: NDArray[np.bool_], origin: FloatArray
+    ) -> NDArray[np.float32]:
+        """Return true depths of the centres of some cells (rows, columns) [m]; nan elsewhere."""
+        depth = np.full(cells.rows * cells.columns, np.nan, dtype=np.float32)
+        index = np.flatnonzero(which)
+        for start in range(0, len(index), CELLS_AT_ONCE):
+            some = index[start : start + CELLS_AT_ONCE]
+            x, y = (cells.centres_of(some) - origin).T
+            depth[some] = self._water_level - self._seabed.elevation_at(x, y)
+        return depth.reshape(cells.shape)
 
 
-def _wet(coverage: CoverageMap, seabed: Seabed, water_level: float) -> NDArray[np.bool_]:
-    wet = np.array(coverage.state != OUTSIDE_AREA, dtype=np.bool_)
-    places = coverage.cells.centres()[wet] - seabed.map_frame.origin[:2]
-    wet[wet] = seabed.elevation_at(places[:, 0], places[:, 1]) < water_level
-    return wet
-
-
-def _density(coverage: CoverageMap, origin: FloatArray) -> DensityTally:
-    """Return empty cells of the Norwegian rules over the survey area, in the local frame."""
-    west, east, south, north = coverage.cells.extent
+def _local_cells(cells: CellGrid, origin: FloatArray) -> CellGrid:
+    """Return cells of the Norwegian rules over a raster, in the local frame."""
+    west, east, south, north = cells.extent
     corners = np.array([[west, south], [east - 1e-6, north - 1e-6]]) - origin[:2]
-    cells = CellGrid.covering(corners, cell_size=norwegian_rules().cell)
-    places = cells.centres().reshape(-1, 2) + origin[:2]
-    inside = coverage.cells.contains(places)
-    at = coverage.cells.index_of(places[inside])
-    inside[inside] = coverage.state.ravel()[at] != OUTSIDE_AREA
-    return DensityTally(cells=cells, inside=inside.reshape(cells.shape))
+    return CellGrid.covering(corners, cell_size=norwegian_rules().cell)
+
+
+def _within(cells: CellGrid, coverage: CoverageMap, origin: FloatArray) -> NDArray[np.bool_]:
+    """Return the local cells whose centre lies in the survey area."""
+    within = np.zeros(cells.rows * cells.columns, dtype=np.bool_)
+    for start in range(0, within.size, CELLS_AT_ONCE):
+        index = np.arange(start, min(start + CELLS_AT_ONCE, within.size))
+        places = cells.centres_of(index) + origin[:2]
+        here = coverage.cells.contains(places)
+        at = coverage.cells.index_of(places[here])
+        within[index[here]] = coverage.state.ravel()[at] != OUTSIDE_AREA
+    return within.reshape(cells.shape)
 
 
 def _least_strict_failure(s44: dict[str, Any]) -> str:
@@ -141,7 +167,7 @@ def _failures(cells: FailureCells, order: Order, evidence: Evidence) -> FailureM
     return FailureMap(
         title=order.title,
         passes=passes,
-        state=cells.state(missing, evidence.coverage.state),
+        state=cells.state(passes, missing, evidence.coverage.state),
         origin=cells.origin,
         lost=[c for c, size in sizes if size and c.cube.side >= size - 1e-9 and not c.found],
     )

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import PixelRecord
 from survey.products.cells import CellGrid
 from survey.products.pixels import SEEN
 
@@ -32,7 +30,7 @@ class Passes:
 
     cells: CellGrid
     wet: NDArray[np.bool_]
-    frames: NDArray[np.int32]
+    frames: NDArray[np.uint16]
 
     def missing(self, *, times: int, hole: float = 0.0) -> NDArray[np.bool_]:
         """Return the wet cells that were seen fewer times.
@@ -53,27 +51,52 @@ class Passes:
         return 1.0 - float(missing.sum()) / float(self.wet.sum())
 
 
-def count_passes(
-    records: Iterable[PixelRecord], cells: CellGrid, *, origin: FloatArray, reach: float
-) -> NDArray[np.int32]:
-    """Return how many frames saw the bottom, or land, near each cell's centre (rows, columns).
+@dataclass(kw_only=True)
+class PassTally:
+    """Counts the frames that saw the bottom, or land, near each cell's centre.
 
     Parameters
     ----------
-    records : iterable of PixelRecord
-        One a frame.
     cells : CellGrid
         On the map.
-    origin : array (3,)
-        Of the records' local frame on the map [m].
     reach : float
         Distance that one pixel answers for [m].
     """
-    frames = np.zeros(cells.shape, dtype=np.int32)
-    for record in records:
-        places = record.true_position[np.isin(record.outcome, SEEN)][:, :2] + origin[:2]
-        frames.ravel()[_reached(places[np.isfinite(places).all(axis=1)], cells, reach)] += 1
-    return frames
+
+    cells: CellGrid
+    reach: float
+    frames: NDArray[np.uint16] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.frames = np.zeros(self.cells.shape, dtype=np.uint16)
+
+    def add(
+        self,
+        places: FloatArray,
+        outcomes: NDArray[np.uint8],
+        flash: NDArray[np.intp],
+        cells: CellGrid | None = None,
+    ) -> None:
+        """Count for some cells, by default all, with all pixels in reach of them.
+
+        Parameters
+        ----------
+        places : array (n, 2)
+            Where pixels look [m, map].
+        outcomes, flash : array (n,)
+            What became of the bottom there, and which frame looked, in rising order.
+        cells : CellGrid, optional
+            Cells of the same lattice.
+        """
+        window = self.cells.window(cells or self.cells)
+        part = self.cells.part(window)
+        seen = np.isin(outcomes, SEEN)
+        places, flash = places[seen], flash[seen]
+        starts = np.flatnonzero(np.diff(flash, prepend=-1))
+        frames = np.zeros(part.shape, dtype=np.uint16)
+        for of_frame in np.split(places, starts[1:]):
+            frames.ravel()[_reached(of_frame, part, self.reach)] += 1
+        self.frames[window] = frames
 
 
 def _reached(places: FloatArray, cells: CellGrid, reach: float) -> NDArray[np.intp]:
