@@ -56,14 +56,14 @@ TABLES: dict[str, Any] = {
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def run(tmp_path_factory: pytest.TempPathFactory, small_survey: Any) -> Path:
     """A run of two frames of 16 x 8 pixels over a slope from 3 m, its echoes made by hand."""
     folder = tmp_path_factory.mktemp("score")
     scenario = Scenario.from_tables(TABLES, name="reef.toml", folder=folder)
     seabed, flashes = components.seabed(scenario), components.frames(scenario)
     kept = RunFolder.open(folder / "run", scenario)
     for frame in flashes:
-        kept.keep(frame.index, seen(scenario, seabed, frame))
+        kept.keep(frame.index, seen(small_survey.bottom, scenario, seabed, frame))
     write_products(
         kept.path,
         read=kept.frame,
@@ -74,8 +74,11 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return kept.path
 
 
-def seen(scenario: Scenario, seabed: Seabed, frame: Frame) -> FrameResult:
-    """Return a frame that finds every bottom with errors of 5 cm, but one 2 m too high."""
+def seen(some: PointCloud, scenario: Scenario, seabed: Seabed, frame: Frame) -> FrameResult:
+    """Return a frame that finds every bottom with errors of 5 cm, but one 2 m too high.
+
+    What is not said here the points have from ``some``.
+    """
     camera, random = components.camera(scenario), np.random.default_rng(frame.index)
     targets = true_targets(
         seabed=seabed,
@@ -90,20 +93,14 @@ def seen(scenario: Scenario, seabed: Seabed, frame: Frame) -> FrameResult:
     position = truth + random.normal([0.0, 0.0, -0.03], 0.05, truth.shape)
     position[0, 2] += 2.0
     n = len(truth)
-    cloud = PointCloud(
+    cloud = replace(
+        some.select(np.zeros(n, dtype=np.intp)),
         position=position,
         uncorrected=position,
         truth=truth,
         classification=np.full(n, PointClass.BATHYMETRIC, dtype=np.uint8),
-        true_classification=np.full(n, PointClass.BATHYMETRIC, dtype=np.uint8),
-        substrate=np.zeros(n, dtype=np.uint8),
         true_elevation=seabed.elevation_at(position[:, 0], position[:, 1]),
-        time=np.full(n, frame.time),
-        depth=targets.depth.ravel(),
-        counts=np.full(n, 100.0, dtype=np.float32),
-        snr=np.full(n, 9.0, dtype=np.float32),
         frame=np.full(n, frame.index, dtype=np.uint32),
-        line=np.zeros(n, dtype=np.uint16),
         row=row.astype(np.uint16),
         column=column.astype(np.uint16),
     )
