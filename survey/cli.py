@@ -226,6 +226,31 @@ app.command()(waveforms_console.waveforms)
 
 
 @app.command()
+def score(
+    cloud: Annotated[Path, typer.Argument(metavar="CLOUD", help="LAS, LAZ, PLY or CSV.")],
+    folder: Annotated[Path, typer.Option("--run", metavar="RUN", help="Whose truth to score by.")],
+    as_json: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Also write all of it here.")
+    ] = None,
+    bottom_class: Annotated[
+        list[int] | None,
+        typer.Option(min=0, max=255, help="Class that is bottom; may be repeated. [40 and 43]"),
+    ] = None,
+) -> None:
+    """Score anybody's processed cloud against the truth of a run."""
+    from survey.products.json_file import write_json
+    from survey.score.report import as_text
+    from survey.score.score import BOTTOM, require_place, score_cloud
+
+    if as_json is not None:
+        require_place(as_json)
+    found = score_cloud(cloud, folder, bottom=tuple(bottom_class or BOTTOM))
+    if as_json is not None:
+        write_json(as_json, found)
+    typer.echo(as_text(found))
+
+
+@app.command()
 def response(
     water: Annotated[
         str | None, typer.Option(metavar="NAME", help="clear, coastal or harbor.")

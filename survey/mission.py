@@ -21,6 +21,7 @@ from survey.products.frame_file import FrameResult
 from survey.products.observation import Observation
 from survey.products.performance import Stopwatch, write_performance
 from survey.products.run_products import write_products
+from survey.products.verdict.words import verdict_lines
 from survey.progress import Unwatched, Watcher
 from survey.run_folder import RunFolder
 from survey.run_lock import require_free, sole_pilot
@@ -189,6 +190,7 @@ def summary(folder: Path, metrics: dict[str, object]) -> str:
             f"bottom against the true seabed: bias {_metres(metrics['bias_m'])}, "
             f"95 % within {_metres(metrics['p95_abs_error_m'])}, "
             f"false bottoms {metrics['false_bottoms']}",
+            *verdict_lines(metrics),
             f"written to {folder}: report.html, bottom.laz, bathymetry.tif and others",
         )
     )

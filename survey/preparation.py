@@ -22,6 +22,7 @@ from survey.optics.water import WaterColumn
 from survey.products.run_products import ProductSettings
 from survey.scenario import components
 from survey.scenario.scenario import Scenario
+from survey.scenario.seabed_objects import cubes
 from survey.sensor.camera import Camera
 from survey.sensor.detector import Detector, Readings
 from survey.transport.engine import Engine
@@ -110,20 +111,27 @@ def prepare(scenario: Scenario) -> Mission:
             group_index=water.group_index,
             pixel_tangent=camera.pixel_tangent,
         ),
-        products=ProductSettings(
-            title=scenario.mission.title,
-            description=scenario.mission.description,
-            start_utc=scenario.mission.start_utc,
-            water_level=surface.level,
-            thinning=scenario.processing.thinning_m,
-            grid=scenario.processing.grid_m,
-            pixel_spacing=camera.pixel_tangent * scenario.flight.height_m,
-            survey_area=components.survey_area(scenario),
-            trajectory_files=scenario.navigation.trajectory_files,
-            deviations=components.navigation(scenario).deviations,
-            water=water,
-        ),
+        products=product_settings(scenario),
         raw_step=RAW_STEPS[scenario.processing.keep_waveforms],
+    )
+
+
+def product_settings(scenario: Scenario) -> ProductSettings:
+    """Return what the products need to know of a scenario."""
+    return ProductSettings(
+        title=scenario.mission.title,
+        description=scenario.mission.description,
+        start_utc=scenario.mission.start_utc,
+        water_level=components.sea_surface(scenario).level,
+        thinning=scenario.processing.thinning_m,
+        grid=scenario.processing.grid_m,
+        pixel_spacing=components.camera(scenario).pixel_tangent * scenario.flight.height_m,
+        survey_area=components.survey_area(scenario),
+        trajectory_files=scenario.navigation.trajectory_files,
+        deviations=components.navigation(scenario).deviations,
+        water=components.water(scenario),
+        order=scenario.mission.order,
+        cubes=cubes(scenario),
     )
 
 

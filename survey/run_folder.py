@@ -27,7 +27,7 @@ from survey.scenario.scenario import Scenario
 JOURNAL = "journal.jsonl"
 PRODUCTS = (
     *("bottom.*", "water_surface.*", "bathymetry.*", "trajectory.*", "trajectory_*"),
-    *("coverage.geojson", "metrics.json", "performance.json", "report.html"),
+    *("coverage.geojson", "failures.geojson", "metrics.json", "performance.json", "report.html"),
 )
 
 

@@ -85,11 +85,16 @@ class Seabed:
 
     def elevation_at(self, x: ArrayLike, y: ArrayLike) -> FloatArray:
         """Return the elevation of the topmost face at local places; nan where there is none."""
+        return self.topmost_at(x, y)[0]
+
+    def topmost_at(self, x: ArrayLike, y: ArrayLike) -> tuple[FloatArray, NDArray[np.int64]]:
+        """Return elevation and number of the topmost face at local places; nan and -1 without."""
         x, y = np.broadcast_arrays(np.asarray(x, np.float64), np.asarray(y, np.float64))
         top = self.grid.z_high + 1.0
         origins = np.column_stack([x.ravel(), y.ravel(), np.full(x.size, top)])
-        t, _ = cast_rays(self.grid, origins, np.array([0.0, 0.0, -1.0]))
-        return np.where(np.isfinite(t), top - t, np.nan).reshape(x.shape)
+        t, face = cast_rays(self.grid, origins, np.array([0.0, 0.0, -1.0]))
+        elevation = np.where(np.isfinite(t), top - t, np.nan)
+        return elevation.reshape(x.shape), face.reshape(x.shape)
 
     def require_coverage(
         self, outlines: Sequence[FloatArray], *, label: str = "flight", spacing: float = 1.0

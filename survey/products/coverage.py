@@ -186,23 +186,24 @@ def write_coverage_geojson(
 def _covered(coverage: CoverageMap, map_frame: MapFrame) -> list[dict[str, Any]]:
     covered = coverage.covered
     return [
-        _feature(rings, map_frame, {"kind": "covered"})
-        for rings, _ in _polygons(covered.astype(np.int16), covered, coverage.cells)
+        map_feature(rings, map_frame, {"kind": "covered"})
+        for rings, _ in cell_polygons(covered.astype(np.int16), covered, coverage.cells)
     ]
 
 
 def _holes(coverage: CoverageMap, map_frame: MapFrame, min_area: float) -> list[dict[str, Any]]:
     missing = ~coverage.covered & (coverage.state != OUTSIDE_AREA)
     return [
-        _feature(rings, map_frame, {"kind": "hole", "cause": coverage.cause(state)})
-        for rings, state in _polygons(coverage.state, missing, coverage.cells)
+        map_feature(rings, map_frame, {"kind": "hole", "cause": coverage.cause(state)})
+        for rings, state in cell_polygons(coverage.state, missing, coverage.cells)
         if _area(rings) > min_area
     ]
 
 
-def _polygons(
+def cell_polygons(
     values: NDArray[np.int16], mask: NDArray[np.bool_], cells: CellGrid
 ) -> list[tuple[list[FloatArray], int]]:
+    """Return the rings on the map around the cells of a mask that have one value, and the value."""
     from rasterio.features import shapes
 
     found = shapes(values, mask=mask, connectivity=4, transform=cells.transform)
@@ -211,9 +212,10 @@ def _polygons(
     ]
 
 
-def _feature(
+def map_feature(
     rings: list[FloatArray], map_frame: MapFrame, properties: dict[str, str]
 ) -> dict[str, Any]:
+    """Return rings on the map as a GeoJSON polygon with its properties and its area."""
     from pyproj import Transformer
 
     to_wgs84 = Transformer.from_crs(map_frame.epsg, 4326, always_xy=True)

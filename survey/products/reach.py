@@ -6,16 +6,16 @@ from collections.abc import Mapping
 from typing import Any
 
 from survey.optics.water import WaterColumn
-from survey.optics.water.apparent import diffuse_attenuation
+from survey.optics.water.apparent import diffuse_attenuation, secchi_depth_of
 
 DEPTHS = ("found_depth", "half_found_depth", "detection_depth")
 
 
 def optical_depths(metrics: Mapping[str, Any], water: WaterColumn) -> dict[str, float | None]:
-    """Return c z and K_d z for each value named ``*_depth_m``, and c and K_d under the surface.
+    """Return each ``*_depth_m`` as c z, K_d z and Secchi depths; c and K_d under the surface.
 
     c z and K_d z are integrals over the water's layers, None where the depth is None. K_d is that
-    of `diffuse_attenuation`.
+    of `diffuse_attenuation`, the Secchi depth that of `secchi_depth_of`.
 
     Examples
     --------
@@ -26,10 +26,12 @@ def optical_depths(metrics: Mapping[str, Any], water: WaterColumn) -> dict[str, 
     >>> deep = optical_depths(found, water)
     >>> round(deep["found_depth_c_z"], 2), round(deep["half_found_depth_k_d_z"], 2)
     (1.79, 1.52)
-    >>> deep["detection_depth_c_z"] is None
-    True
+    >>> deep["detection_depth_c_z"] is None, round(deep["found_depth_secchi"], 2)
+    (True, 0.3)
     """
+    secchi = secchi_depth_of(water)
     values: dict[str, float | None] = {
+        "secchi_depth_m": secchi,
         "attenuation_per_m": water.surface.attenuation,
         "diffuse_attenuation_per_m": diffuse_attenuation(water.surface),
     }
@@ -40,6 +42,7 @@ def optical_depths(metrics: Mapping[str, Any], water: WaterColumn) -> dict[str, 
         values[f"{name}_k_d_z"] = (
             float(water.integral(depth, diffuse_attenuation)) if known else None
         )
+        values[f"{name}_secchi"] = depth / secchi if known else None
     return values
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -64,6 +64,7 @@ def write_report(
     coverage: CoverageMap,
     errors: ErrorTally,
     water_level: float,
+    verdict: Sequence[str] = (),
 ) -> None:
     """Write a self-contained HTML page: what was flown, key figures, two maps, a histogram.
 
@@ -83,6 +84,8 @@ def write_report(
         Elevation errors of the bottom points [m].
     water_level : float
         In the vertical datum [m].
+    verdict : sequence of str
+        Lines of HTML that say which order of S-44 is met.
     """
     body = "\n".join(
         [
@@ -90,6 +93,7 @@ def write_report(
             *(f"<p>{escape(text)}</p>" for text in description.split("\n\n") if text.strip()),
             "<p>Every point of this survey is simulated.</p>",
             *("<h2>Key figures</h2>", _table(metrics)),
+            *verdict,
             "<h2>Depth</h2>",
             f"<p>Median of the points in cells of {grid.cells.cell_size:g} m, "
             f"below the water level at {water_level:+.2f} m in the vertical datum.</p>",

@@ -40,7 +40,7 @@ def depth_map(grid: ElevationMap, *, water_level: float) -> bytes:
     from matplotlib import colormaps
 
     depth = water_level - grid.elevation
-    figure, axes = _map_axes(grid.cells)
+    figure, axes = map_axes(grid.cells)
     shallow, deep = depth_range(depth[np.isfinite(depth)])
     land = {"under": LAND} if shallow == 0.0 else {}
     colours = colormaps[COLOURS].with_extremes(**land)
@@ -55,7 +55,7 @@ def depth_map(grid: ElevationMap, *, water_level: float) -> bytes:
     figure.colorbar(
         image, ax=axes, label="depth below water level [m]", extend="min" if land else "neither"
     )
-    return _png(figure)
+    return png(figure)
 
 
 def outcome_map(coverage: CoverageMap) -> bytes:
@@ -63,7 +63,7 @@ def outcome_map(coverage: CoverageMap) -> bytes:
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
-    figure, axes = _map_axes(coverage.cells)
+    figure, axes = map_axes(coverage.cells)
     inside = coverage.state != OUTSIDE_AREA
     handles, step = [], -(-max(coverage.state.shape) // MOST_PICTURE_CELLS)
     for state, (words, colour) in STATE_LOOKS.items():
@@ -79,7 +79,7 @@ def outcome_map(coverage: CoverageMap) -> bytes:
                 interpolation="nearest",
             )
     figure.legend(handles=handles, loc="outside upper center", ncols=3, frameon=False)
-    return _png(figure)
+    return png(figure)
 
 
 def error_histogram(errors: ErrorTally) -> bytes:
@@ -93,17 +93,18 @@ def error_histogram(errors: ErrorTally) -> bytes:
     axes.set_xlabel("measured less true elevation [m]")
     axes.set_ylabel(f"bottom points per {200.0 * limit / HISTOGRAM_BINS:.2g} cm")
     axes.spines[["top", "right"]].set_visible(False)
-    return _png(figure)
+    return png(figure)
 
 
-def _map_axes(cells: CellGrid) -> tuple[Figure, Axes]:
+def map_axes(cells: CellGrid) -> tuple[Figure, Axes]:
+    """Return an empty map of the cells."""
     west, east, south, north = cells.extent
     figure, axes = _figure(height=float(np.clip(7.0 * (north - south) / (east - west), 2.6, 7.5)))
     axes.set_xlabel("easting [m]")
     axes.set_ylabel("northing [m]")
     axes.set_aspect("equal")
     axes.ticklabel_format(useOffset=False, style="plain")
-    axes.locator_params(axis="x", nbins=5)
+    axes.locator_params(axis="x", nbins=5 if east - west > 0.5 * (north - south) else 2)
     axes.set_facecolor("#f4f4f4")
     return figure, axes
 
@@ -115,7 +116,8 @@ def _figure(*, height: float) -> tuple[Figure, Axes]:
     return figure, figure.add_subplot()
 
 
-def _png(figure: Figure) -> bytes:
+def png(figure: Figure) -> bytes:
+    """Return a figure as PNG, the same bytes every time."""
     buffer = BytesIO()
     figure.savefig(buffer, format="png", metadata={"Software": None})
     return buffer.getvalue()

@@ -32,6 +32,9 @@ from survey.products.tif_file import bathymetry_tif
 from survey.products.tile_points import TilePoints, tile_points
 from survey.products.track_files import TrackFormat, write_trajectory_files
 from survey.products.trajectory_file import write_trajectory_csv
+from survey.products.verdict.features import Cube
+from survey.products.verdict.mission import VerdictTally
+from survey.products.verdict.report import verdict_section
 from survey.progress import Unwatched, Watcher
 from terrain.map_frame import MapFrame
 from terrain.seabed import Seabed
@@ -66,6 +69,10 @@ class ProductSettings:
         Standard deviations of the measured pose, see `Navigation.deviations`.
     water : WaterColumn
         Makes optical depths of depths.
+    order : str or None
+        Key of the order of S-44 that was asked for.
+    cubes : sequence of Cube
+        On the bottom, for the feature tests.
     """
 
     title: str
@@ -79,6 +86,8 @@ class ProductSettings:
     trajectory_files: Sequence[TrackFormat]
     deviations: tuple[float, ...]
     water: WaterColumn
+    order: str | None
+    cubes: Sequence[Cube]
 
     @property
     def reach(self) -> float:
@@ -138,6 +147,13 @@ def write_products(
         survey_area=area,
         cell_size=max(settings.grid, settings.pixel_spacing),
     )
+    verdict = VerdictTally(
+        cells=coverage.cells,
+        seabed=seabed,
+        water_level=settings.water_level,
+        reach=settings.reach,
+        cubes=settings.cubes,
+    )
     with (
         _point_files(folder, look, frames, map_frame, settings) as add_points,
         bathymetry_tif(folder / "bathymetry.tif", raster, map_frame) as add_cells,
@@ -150,10 +166,14 @@ def write_products(
             coverage.add(part.looked_at, part.outcomes, part.tile.cells)
             accuracy.add(part.bottom, part.surface)
             substrates.add_points(part.bottom)
+            verdict.add(part)
     found = accuracy.metrics(
         pixels=look.pixels, elevation_at=seabed.elevation_at, water=settings.water
     )
     found["substrates"] = substrates.metrics(seabed.substrate_names)
+    judged = verdict.judged(coverage.map(), asked=settings.order)
+    found |= judged.metrics
+    judged.failures.write(folder / "failures.geojson", map_frame)
     write_json(folder / "metrics.json", found)
     _write_tracks(folder, frames, map_frame, settings)
     seen, covered = overview.map(), coverage.map()
@@ -171,6 +191,7 @@ def write_products(
         coverage=covered,
         errors=accuracy.bottom.errors,
         water_level=settings.water_level,
+        verdict=verdict_section(judged),
     )
     return found
 

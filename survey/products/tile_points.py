@@ -31,6 +31,8 @@ class TilePoints:
         Where pixels look, in the tile and its margin [m, map].
     outcomes : array (n,)
         What became of the bottom there.
+    flash : array (n,)
+        Which of the tile's frames looked there, counted from 0 in the order of the places.
     """
 
     tile: MapTile
@@ -38,6 +40,7 @@ class TilePoints:
     surface: PointCloud
     looked_at: FloatArray
     outcomes: NDArray[np.uint8]
+    flash: NDArray[np.intp]
 
 
 def tile_points(
@@ -66,6 +69,7 @@ def tile_points(
         surface=_thinned(tile, PointCloud.concatenate(surface), thinning, map_frame),
         looked_at=np.concatenate(places),
         outcomes=np.concatenate(outcomes),
+        flash=np.repeat(np.arange(len(places)), [len(here) for here in places]),
     )
 
 

@@ -15,6 +15,7 @@ from terrain.map_frame import MapFrame
 if TYPE_CHECKING:
     import trimesh
 
+    from survey.products.verdict.features import Cube
     from terrain.seabed import Seabed
 
 
@@ -27,6 +28,24 @@ def with_objects(seabed: Seabed, scenario: Scenario, frame: MapFrame) -> Seabed:
             body, reflectance=material.reflectance, source=f"On it: {given.kind}."
         ).painted(slice(-len(body.faces), None), material)
     return seabed
+
+
+def cubes(scenario: Scenario) -> list[Cube]:
+    """Return the cubes of the feature tests in the local frame."""
+    from survey.products.verdict.features import Cube
+    from survey.scenario.components import map_frame
+
+    frame = map_frame(scenario)
+    return [
+        Cube(
+            side=given.side_m,
+            east=given.easting_m - frame.easting,
+            north=given.northing_m - frame.northing,
+            heading=radians(given.heading_deg),
+        )
+        for given in scenario.seabed.objects
+        if isinstance(given, kinds.Cube)
+    ]
 
 
 def _lying(

@@ -26,11 +26,15 @@ class Section(BaseModel):
 
 
 class Mission(Section):
-    """What is simulated, where on the map, and from which seed."""
+    """What is simulated, where on the map, and from which seed.
+
+    `order` is the order of IHO S-44 that is asked for.
+    """
 
     title: Text
     description: str = ""
     expect: str = ""
+    order: Literal["exclusive", "special", "order_1a", "order_1b", "order_2"] | None = None
     start_utc: AwareDatetime = datetime(2026, 6, 21, 10, 0, 0, tzinfo=UTC)
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 1
     crs_epsg: Count = 25832

@@ -29,7 +29,7 @@ from survey.sensor.detector import Readings
 PRODUCTS = {
     *("scenario.toml", "manifest.json", "journal.jsonl", "trajectory.csv", "bottom.laz"),
     *("water_surface.laz", "bottom.ply", "water_surface.ply", "bathymetry.tif", "bathymetry.glb"),
-    *("coverage.geojson", "metrics.json", "performance.json", "report.html"),
+    *("coverage.geojson", "failures.geojson", "metrics.json", "performance.json", "report.html"),
     *("log.txt", ".lock"),
     *(f"frames/{number:06d}.npz" for number in range(3)),
 }
@@ -100,6 +100,9 @@ def test_a_mission_leaves_every_product_and_finds_the_seabed(
     assert (log.total, log.flown) == (3, {0, 1, 2})
     assert log.written_steps == log.steps >= 6
     assert f"{found['points_bottom']} bottom points" in log.summary
+    assert set(found["s44"]["orders"]["special"]["criteria"]) > {"tvu", "feature_detection"}
+    assert "Secchi depths" in log.summary
+    assert "<h2>Verdict</h2>" in (run / "report.html").read_text()
 
 
 def test_same_bytes_for_any_workers_any_stops_and_any_damage(

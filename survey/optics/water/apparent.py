@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from math import degrees, exp, log
+from math import degrees, exp, inf, log
+from typing import TYPE_CHECKING
 
 from survey.optics.water.medium import Water
 from survey.optics.water.spectra import NM, tabled
+
+if TYPE_CHECKING:
+    from survey.optics.water.column import WaterColumn
 
 TYLER_COUPLING = 8.69
 
@@ -113,6 +117,31 @@ def tyler_secchi_depth(
     14.8
     """
     return coupling / (attenuation + diffuse_attenuation)
+
+
+def secchi_depth_of(water: WaterColumn) -> float:
+    """Depth at which a Secchi disk vanishes in layered water [m].
+
+    Where the integral of c + K_d reaches Tyler's coupling; in uniform water `tyler_secchi_depth`.
+    Departures: with the coefficients at the laser's wavelength, not the eye's 555 nm, and with
+    K_d of `diffuse_attenuation`.
+
+    Examples
+    --------
+    >>> from survey.optics.water import WaterColumn, petzold_water
+    >>> coastal = petzold_water("coastal", refractive_index=1.34, group_index=1.36)
+    >>> round(secchi_depth_of(WaterColumn.uniform(coastal)), 1)
+    14.8
+    """
+    depth, left = 0.0, TYLER_COUPLING
+    for number, layer in enumerate(water.layers):
+        rate = layer.water.attenuation + diffuse_attenuation(layer.water)
+        below = water.layers[number + 1 : number + 2]
+        thickness = below[0].top - layer.top if below else inf
+        if rate * thickness >= left:
+            return depth + left / rate
+        depth, left = depth + thickness, left - rate * thickness
+    raise AssertionError("the last layer has no end")
 
 
 def lee_secchi_depth(*, diffuse_attenuation: float, reflectance: float) -> float:

@@ -1,0 +1,171 @@
+"""Where a survey does not meet an order, and why there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from survey.cloud.points import Outcome, PointCloud
+from survey.cloud.truth import FALSE_BOTTOM_ERROR
+from survey.products.cells import CellGrid
+from survey.products.coverage import GAP_CAUSE, cell_polygons, map_feature
+from survey.products.json_file import json_bytes
+from survey.products.standards import Order
+from survey.products.standards.orders import WITHIN
+from survey.products.verdict.features import FoundCube
+from survey.products.verdict.passes import Passes
+from survey.products.verdict.tally import BOTTOM, errors_of
+from survey.products.writing import write_whole
+from terrain.map_frame import MapFrame
+
+FloatArray = NDArray[np.float64]
+MEETS, OUTSIDE = 0, -1
+CAUSES = (
+    "",
+    "depth error over the limit",
+    "false bottom",
+    "place error over the limit",
+    "seen too few times",
+)
+DEPTH_ERROR, FALSE_BOTTOM, PLACE_ERROR, TOO_FEW_TIMES = range(1, len(CAUSES))
+FIRST_HOLE = len(CAUSES)
+"""From here on a state is that of a hole: `FIRST_HOLE` + 1 + the state of the coverage map."""
+
+
+@dataclass(kw_only=True)
+class FailureCells:
+    """Cells of the survey area in which points lie outside an order's limits.
+
+    Parameters
+    ----------
+    cells : CellGrid
+    order : Order
+    origin : array (3,)
+        Of the clouds' local frame on the map [m].
+    water_level : float
+        [m].
+    """
+
+    cells: CellGrid
+    order: Order
+    origin: FloatArray
+    water_level: float
+    wrong: NDArray[np.uint8] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.wrong = np.zeros(self.cells.shape, dtype=np.uint8)
+
+    def add(self, cloud: PointCloud, cells: CellGrid | None = None) -> None:
+        """Decide on some cells, by default all, with all points in them."""
+        window = self.cells.window(cells or self.cells)
+        part = self.cells.part(window)
+        cloud = cloud.select(
+            np.isin(cloud.classification, BOTTOM) & np.isfinite(cloud.true_elevation)
+        )
+        on_map = cloud.position + self.origin
+        here = part.contains(on_map)
+        cloud, cell = cloud.select(here), part.index_of(on_map[here])
+        error, aside = errors_of(cloud)
+        depth = np.maximum(self.water_level - cloud.true_elevation, 0.0)
+
+        def counted(which: NDArray[np.bool_]) -> NDArray[np.intp]:
+            return np.bincount(cell[which], minlength=part.rows * part.columns)
+
+        allowed = (1.0 - WITHIN) * counted(np.ones(len(cloud), dtype=np.bool_))
+        tvu = counted(np.abs(error) > self.order.tvu(depth))
+        thu = counted(aside > self.order.thu(depth))
+        false = counted(np.abs(error) > FALSE_BOTTOM_ERROR)
+        wrong = np.select(
+            [(tvu > allowed) & (2 * false >= tvu), tvu > allowed, thu > allowed],
+            [FALSE_BOTTOM, DEPTH_ERROR, PLACE_ERROR],
+            MEETS,
+        )
+        self.wrong[window] = wrong.reshape(part.shape)
+
+    def state(
+        self, passes: Passes, missing: NDArray[np.bool_], hole_state: NDArray[np.int16]
+    ) -> NDArray[np.int16]:
+        """Return what is wrong in each cell (rows, columns): an index of `CAUSES` or a hole.
+
+        Parameters
+        ----------
+        passes : Passes
+        missing : array of bool
+            Cells that were not seen as often as asked.
+        hole_state : array of int16
+            State of the coverage map.
+        """
+        seen_once = missing & (passes.frames > 0)
+        rules = (
+            (~passes.wet, np.int16(OUTSIDE)),
+            (missing & (hole_state == Outcome.FALSE_BOTTOM), np.int16(FALSE_BOTTOM)),
+            (missing & ~seen_once, hole_state + np.int16(FIRST_HOLE + 1)),
+            (self.wrong != MEETS, self.wrong.astype(np.int16)),
+            (seen_once, np.int16(TOO_FEW_TIMES)),
+        )
+        state = np.select([rule for rule, _ in rules], [name for _, name in rules], MEETS)
+        return state.astype(np.int16)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FailureMap:
+    """Where an order is not met.
+
+    Parameters
+    ----------
+    title : str
+        Of the order.
+    passes : Passes
+        Whose cells they are.
+    state : array (rows, columns)
+        From `FailureCells.state`.
+    lost : sequence of FoundCube
+        Cubes that were not found.
+    origin : array (3,)
+        Of the cubes' local frame on the map [m].
+    """
+
+    title: str
+    passes: Passes
+    state: NDArray[np.int16]
+    lost: Sequence[FoundCube]
+    origin: NDArray[np.float64]
+
+    def cause(self, state: int) -> str:
+        """Return the name of what is wrong."""
+        if state < FIRST_HOLE:
+            return CAUSES[state]
+        number = state - FIRST_HOLE - 1
+        return GAP_CAUSE if number < 0 else Outcome(number).name.lower().replace("_", " ")
+
+    def write(self, path: Path, map_frame: MapFrame) -> None:
+        """Write the failing areas, and lost cubes as points, as GeoJSON (RFC 7946: WGS 84).
+
+        Features have ``order``, ``cause`` and, if they are areas, ``area_m2``.
+        """
+        wrong = self.state > MEETS
+        features: list[dict[str, Any]] = [
+            map_feature(rings, map_frame, {"order": self.title, "cause": self.cause(state)})
+            for rings, state in cell_polygons(self.state, wrong, self.passes.cells)
+        ]
+        features += [_lost(cube, self.title, map_frame) for cube in self.lost]
+        write_whole(path, json_bytes({"type": "FeatureCollection", "features": features}))
+
+
+def _lost(cube: FoundCube, title: str, map_frame: MapFrame) -> dict[str, Any]:
+    from pyproj import Transformer
+
+    place = map_frame.to_map(np.array([cube.cube.east, cube.cube.north, 0.0]))
+    to_wgs84 = Transformer.from_crs(map_frame.epsg, 4326, always_xy=True)
+    lon, lat = to_wgs84.transform(place[0], place[1])
+    cause = f"cube of {cube.cube.side:g} m not found"
+    return {
+        "type": "Feature",
+        "properties": {"order": title, "cause": cause, "points": cube.points},
+        "geometry": {"type": "Point", "coordinates": [round(lon, 8), round(lat, 8)]},
+    }

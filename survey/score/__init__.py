@@ -1,0 +1,1 @@
+"""Anybody's processed cloud against the truth of a run."""
