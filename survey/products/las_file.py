@@ -54,6 +54,7 @@ def write_laz(
     *,
     start_utc: datetime,
     frames: Sequence[Frame],
+    strip_adjustment: str = "none",
 ) -> None:
     """Write a cloud as LAZ (or LAS, by the suffix), every point flagged synthetic.
 
@@ -74,6 +75,8 @@ def write_laz(
         Start of the mission; the file's creation date as well.
     frames : sequence of Frame
         Flashes that the cloud's points name, for the scan angle.
+    strip_adjustment : str
+        How lines were brought together; unless "none" the header's generating software says it.
 
     Raises
     ------
@@ -85,7 +88,10 @@ def write_laz(
     import laspy
 
     require_points(path, cloud)
-    las = laspy.LasData(_header(map_frame, start_utc))
+    header = _header(map_frame, start_utc)
+    if strip_adjustment != "none":
+        header.generating_software = f"bathyflash adjust {strip_adjustment}"
+    las = laspy.LasData(header)
     on_map = map_frame.to_map(cloud.position)
     las.x, las.y, las.z = on_map[:, 0], on_map[:, 1], on_map[:, 2]
     _fill_standard_fields(las, cloud, frames)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from survey.cloud.overlaps import line_cells, overlaps
 from survey.cloud.points import Outcome, PointClass, PointCloud
 from survey.cloud.stitch import stitched
 from survey.flight.pose import Frame
@@ -25,6 +26,7 @@ from survey.products.mesh_files import has_triangles, write_bathymetry_glb
 from survey.products.pixels import explain_empty
 from survey.products.ply_file import write_ply
 from survey.products.report import write_report
+from survey.products.strip_differences import overlap_metrics, write_strip_differences
 from survey.products.substrates import substrate_metrics
 from survey.products.track_files import TrackFormat, write_trajectory_files
 from survey.products.trajectory_file import write_trajectory_csv
@@ -59,6 +61,8 @@ class ProductSettings:
         Standard deviations of the measured pose, see `Navigation.deviations`.
     water : WaterColumn
         Makes optical depths of depths.
+    strip_adjustment : str
+        How the lines were brought together: "none", "boresight" or "offsets".
     """
 
     title: str
@@ -72,6 +76,7 @@ class ProductSettings:
     trajectory_files: Sequence[TrackFormat]
     deviations: tuple[float, ...]
     water: WaterColumn
+    strip_adjustment: str = "none"
 
 
 def write_products(
@@ -123,6 +128,10 @@ def write_products(
         cell_size=cell,
         water=settings.water,
     )
+    lines = line_cells((result.bottom for result in results), cell_size=cell)
+    write_strip_differences(folder / "strip_differences.tif", lines, seabed.map_frame)
+    found["strip_adjustment"] = settings.strip_adjustment
+    found["overlaps"] = overlap_metrics(overlaps(lines))
     found["substrates"] = substrate_metrics(bottom, results, seabed.substrate_names)
     write_json(folder / "metrics.json", found)
     write_report(
@@ -165,6 +174,7 @@ def _write_clouds(
             seabed.map_frame,
             start_utc=settings.start_utc,
             frames=frames,
+            strip_adjustment=settings.strip_adjustment,
         )
     write_trajectory_csv(
         folder / "trajectory.csv", frames, [frame.measured for frame in frames], seabed.map_frame
