@@ -103,20 +103,25 @@ def prepare(scenario: Scenario) -> Mission:
         engine=_engine(scenario, seabed, water, surface),
         level_error=scenario.processing.water_level_error_m,
         posed_noise=posed_noise(scenario, frames[0], surface),
-        products=ProductSettings(
-            title=scenario.mission.title,
-            description=scenario.mission.description,
-            start_utc=scenario.mission.start_utc,
-            water_level=surface.level,
-            thinning=scenario.processing.thinning_m,
-            grid=scenario.processing.grid_m,
-            pixel_spacing=camera.pixel_tangent * scenario.flight.height_m,
-            survey_area=components.survey_area(scenario),
-            trajectory_files=scenario.navigation.trajectory_files,
-            deviations=components.navigation(scenario).deviations,
-            water=water,
-        ),
+        products=product_settings(scenario),
         raw_step=RAW_STEPS[scenario.processing.keep_waveforms],
+    )
+
+
+def product_settings(scenario: Scenario) -> ProductSettings:
+    """Return what the products need to know beside the frames."""
+    return ProductSettings(
+        title=scenario.mission.title,
+        description=scenario.mission.description,
+        start_utc=scenario.mission.start_utc,
+        water_level=scenario.surface.water_level_m,
+        thinning=scenario.processing.thinning_m,
+        grid=scenario.processing.grid_m,
+        pixel_spacing=components.camera(scenario).pixel_tangent * scenario.flight.height_m,
+        survey_area=components.survey_area(scenario),
+        trajectory_files=scenario.navigation.trajectory_files,
+        deviations=components.navigation(scenario).deviations,
+        water=components.water(scenario),
     )
 
 

@@ -35,7 +35,8 @@ LARGEST_SHARE = 0.5
 RESOLVED = 0.5
 """Share of an unknown in the directions that are corrected, from which it counts as solved."""
 FEWEST_MATCHES = 200
-MOST_STEPS = 12
+FEWEST_STEPS, MOST_STEPS = 4, 12
+"""The first look at strips far apart takes their distance for noise, and less for told."""
 SMALL_STEP = 0.3
 """Step over standard error at which strips are at rest: some neighbours change for ever."""
 LEAST_STEP = 0.002  # [m]
@@ -148,14 +149,15 @@ def adjust(
         )
     unknowns = Unknowns.of(strips, mode=mode, line_deviations=line_deviations)
     values = np.zeros(len(unknowns.expected))
-    for _ in range(MOST_STEPS):
+    for number in range(MOST_STEPS):
         found, noise, system = _look(strips, unknowns, values, cell_size)
         step = _solved(system, unknowns, noise, values)
         covariance = _covariance(system, unknowns, noise, frame_deviations)
         kept = _kept(covariance, unknowns, largest_error)
         values = values + step
         told = np.abs(kept @ (step / unknowns.expected)) * unknowns.expected
-        if (told < np.maximum(SMALL_STEP * _errors(covariance, unknowns), LEAST_STEP)).all():
+        small = np.maximum(SMALL_STEP * _errors(covariance, unknowns), LEAST_STEP)
+        if number + 1 >= FEWEST_STEPS and (told < small).all():
             break
     else:
         raise AdjustmentError(
