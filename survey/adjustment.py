@@ -111,8 +111,8 @@ def adjust_run(
     UserError
         When the output holds something else, or the strips cannot be adjusted.
     """
-    folder = RunFolder.flown(run)
     _require_place(output, run)
+    folder = RunFolder.flown(run)
     scenario = load_scenario(run / SCENARIO)
     frames = {f.index: f for f in components.frames(scenario) if f.index in folder.whole}
     water, navigation = components.water(scenario), components.navigation(scenario)
