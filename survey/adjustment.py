@@ -27,6 +27,7 @@ from survey.products.frame_file import FrameResult
 from survey.products.json_file import write_json
 from survey.products.run_products import write_products
 from survey.products.strip_differences import overlap_metrics
+from survey.products.strip_picture import write_strip_picture
 from survey.run_folder import RunFolder
 from survey.run_identity import SCENARIO
 from survey.scenario import components
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-REPORT = "adjustment.json"
+REPORT, PICTURE = "adjustment.json", "strip_differences.png"
 FALSE_BOTTOM = 1.0  # [m]
 
 
@@ -140,7 +141,7 @@ def adjust_run(
         raise UserError(f"{run}: {fault}") from None
     adjusted = [_adjusted(result, found, frames, seabed, water) for result in results]
     output.mkdir(parents=True, exist_ok=True)
-    metrics = write_products(
+    write_products(
         output,
         results=adjusted,
         frames=list(frames.values()),
@@ -150,7 +151,11 @@ def adjust_run(
         ),
     )
     cell = max(settings.grid, settings.pixel_spacing)
-    before = line_cells((result.bottom for result in results), cell_size=cell)
+    before, after = (
+        line_cells((result.bottom for result in part), cell_size=cell)
+        for part in (results, adjusted)
+    )
+    write_strip_picture(output / PICTURE, before, after, seabed.map_frame)
     return AdjustedRun(
         adjustment=found,
         mounting=true_mounting(navigation),
@@ -158,7 +163,7 @@ def adjust_run(
         before=_accuracy(result.bottom for result in results),
         after=_accuracy(result.bottom for result in adjusted),
         overlaps_before=overlap_metrics(overlaps(before)),
-        overlaps_after=metrics["overlaps"],
+        overlaps_after=overlap_metrics(overlaps(after)),
     )
 
 

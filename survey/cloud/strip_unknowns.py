@@ -115,11 +115,12 @@ class Unknowns:
         if self.mode == "offsets":
             return np.zeros((len(strip), 3, 0))
         found = np.zeros((len(strip), 3, len(self.common)))
-        for i in range(6):
+        for i in range(len(ANGLES)):
             step = np.zeros(len(values))
             step[i] = STEP
             ahead, behind = (strip.placed(self.mounting(values + s)) for s in (step, -step))
             found[:, :, i] = (ahead - behind) / (2.0 * STEP)
+        found[:, :, 3:6] = strip.sights.to_map
         found[:, 2, 6:] = self._ranging(strip)
         return found
 
