@@ -13,6 +13,7 @@ from survey.cloud.overlaps import LineCells, line_cells, overlaps
 from survey.cloud.points import PointCloud
 from survey.products.report import _overlaps
 from survey.products.strip_differences import overlap_metrics, write_strip_differences
+from survey.products.strip_picture import write_strip_picture
 
 SIDE = 4.0
 
@@ -99,3 +100,9 @@ def test_the_report_says_whether_strips_are_adjusted(cells: LineCells) -> None:
     page = "".join(_overlaps(figures, "boresight"))
     assert "adjusted: boresight" in page
     assert page.count("<tr>") == len(figures) + 1
+
+
+def test_the_picture_shows_both_states(tmp_path: Path, small_survey: Any, cells: LineCells) -> None:
+    path = tmp_path / "strip_differences.png"
+    write_strip_picture(path, cells, cells, small_survey.map_frame)
+    assert path.read_bytes().startswith(b"\x89PNG")
