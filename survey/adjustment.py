@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import json
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +13,6 @@ from numpy.typing import NDArray
 
 from survey.adjustment_truth import true_mounting, true_offsets
 from survey.alone import alone
-from survey.cloud.overlaps import line_cells, overlaps
 from survey.cloud.points import PointCloud
 from survey.cloud.sights import moved
 from survey.cloud.strip_adjustment import LARGEST_ERROR, Adjustment, AdjustmentError, adjust
@@ -26,7 +26,7 @@ from survey.products.accuracy import BOTTOM_CLASSES
 from survey.products.frame_file import FrameResult
 from survey.products.json_file import write_json
 from survey.products.run_products import write_products
-from survey.products.strip_differences import overlap_metrics
+from survey.products.strip_differences import DIFFERENCES
 from survey.products.strip_picture import write_strip_picture
 from survey.run_folder import RunFolder
 from survey.run_identity import SCENARIO
@@ -114,23 +114,22 @@ def adjust_run(
     """
     _require_place(output, run)
     folder = RunFolder.flown(run)
+    before = _overlaps_of(run)
     scenario = load_scenario(run / SCENARIO)
     frames = {f.index: f for f in components.frames(scenario) if f.index in folder.whole}
     water, navigation = components.water(scenario), components.navigation(scenario)
     settings, seabed = product_settings(scenario), components.seabed(scenario)
-    results = folder.read(sorted(frames))
+    line_deviations, frame_deviations = _deviations(navigation, scenario.flight.height_m)
     try:
-        strips = strips_of(
-            (result.bottom for result in results),
-            frames,
-            cell_size=settings.pixel_spacing,
-            refractive_index=water.refractive_index,
-            group_index=water.group_index,
-        )
-        line_deviations, frame_deviations = _deviations(navigation, scenario.flight.height_m)
         found = alone(
             adjust,
-            strips,
+            strips_of(
+                (folder.frame(index).bottom for index in sorted(frames)),
+                frames,
+                cell_size=settings.pixel_spacing,
+                refractive_index=water.refractive_index,
+                group_index=water.group_index,
+            ),
             mode=mode,
             cell_size=settings.pixel_spacing,
             line_deviations=line_deviations,
@@ -139,32 +138,39 @@ def adjust_run(
         )
     except AdjustmentError as fault:
         raise UserError(f"{run}: {fault}") from None
-    adjusted = [_adjusted(result, found, frames, seabed, water) for result in results]
+
+    def adjusted(index: int) -> FrameResult:
+        return _adjusted(folder.frame(index), found, frames, seabed, water)
+
     output.mkdir(parents=True, exist_ok=True)
-    write_products(
+    metrics = write_products(
         output,
-        results=adjusted,
+        read=adjusted,
         frames=list(frames.values()),
         seabed=seabed,
         settings=replace(
             settings, title=f"{settings.title}, strips adjusted", strip_adjustment=mode
         ),
     )
-    cell = max(settings.grid, settings.pixel_spacing)
-    before, after = (
-        line_cells((result.bottom for result in part), cell_size=cell)
-        for part in (results, adjusted)
-    )
-    write_strip_picture(output / PICTURE, before, after, seabed.map_frame)
+    write_strip_picture(output / PICTURE, run / DIFFERENCES, output / DIFFERENCES)
     return AdjustedRun(
         adjustment=found,
         mounting=true_mounting(navigation),
         offsets=true_offsets(found, list(frames.values())),
-        before=_accuracy(result.bottom for result in results),
-        after=_accuracy(result.bottom for result in adjusted),
-        overlaps_before=overlap_metrics(overlaps(before)),
-        overlaps_after=overlap_metrics(overlaps(after)),
+        before=_accuracy(folder.frame(index).bottom for index in frames),
+        after=_accuracy(adjusted(index).bottom for index in frames),
+        overlaps_before=before,
+        overlaps_after=metrics["overlaps"],
     )
+
+
+def _overlaps_of(run: Path) -> list[dict[str, Any]]:
+    """Return the overlaps of a run whose products are written."""
+    file = run / "metrics.json"
+    found = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+    if "overlaps" not in found or not (run / DIFFERENCES).exists():
+        raise UserError(f"{run}: no products yet. Finish it with `bathyflash run`")
+    return list(found["overlaps"])
 
 
 def _require_place(output: Path, run: Path) -> None:
@@ -220,7 +226,7 @@ def _moved(
     )
 
 
-def _accuracy(clouds: Any) -> Accuracy:
+def _accuracy(clouds: Iterable[PointCloud]) -> Accuracy:
     sums = np.zeros(3)
     for cloud in clouds:
         error = cloud.position - cloud.truth

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import PointClass, PointCloud
+from survey.cloud.points import PointClass
 
 FloatArray = NDArray[np.float64]
 
@@ -24,54 +23,32 @@ class LineCells:
     cell_size : float
         Side of a cell [m].
     cell : array (n, 2)
-        Cells eastward and northward from the origin of the local frame.
+        Cells eastward and northward from zero.
     line : array (n,)
         Lines.
-    total : array (n,)
-        Sum of the elevations [m].
-    count : array (n,)
-        Points.
+    elevation : array (n,)
+        Mean elevations [m].
     """
 
     cell_size: float
     cell: NDArray[np.int64]
     line: NDArray[np.int64]
-    total: FloatArray
-    count: NDArray[np.int64]
-
-    @property
-    def elevation(self) -> FloatArray:
-        """Mean elevations (n,) [m]."""
-        return np.asarray(self.total / self.count)
+    elevation: FloatArray
 
 
-def line_cells(clouds: Iterable[PointCloud], *, cell_size: float) -> LineCells:
-    """Return the lines' cells of clouds that are read one after the other: bottom, objects, land.
-
-    Memory grows with the cells of the map, not with the points of a cloud.
-    """
-    rows = [_rows(cloud, cell_size) for cloud in clouds]
-    whole = np.concatenate([np.zeros((0, 5)), *rows])
-    keys, group = np.unique(whole[:, :3].astype(np.int64), axis=0, return_inverse=True)
+def line_cells(places: FloatArray, line: NDArray[np.uint16], *, cell_size: float) -> LineCells:
+    """Return the cells of points (n, 3) [m] of lines (n,)."""
+    cells = np.floor(places[:, :2] / cell_size).astype(np.int64)
+    keys, group = np.unique(
+        np.column_stack([line.astype(np.int64), cells]), axis=0, return_inverse=True
+    )
+    total = np.bincount(group, places[:, 2], len(keys))
     return LineCells(
         cell_size=cell_size,
         line=keys[:, 0],
         cell=keys[:, 1:],
-        total=np.bincount(group, whole[:, 3], len(keys)).astype(np.float64),
-        count=np.bincount(group, whole[:, 4], len(keys)).astype(np.int64),
+        elevation=total / np.bincount(group, minlength=len(keys)),
     )
-
-
-def _rows(cloud: PointCloud, cell_size: float) -> FloatArray:
-    """Return line, cell eastward and northward, sum and number of each cell of a cloud (m, 5)."""
-    solid = np.isin(cloud.classification, SOLID)
-    place = cloud.position[solid]
-    cells = np.floor(place[:, :2] / cell_size)
-    keys, group = np.unique(
-        np.column_stack([cloud.line[solid], cells]), axis=0, return_inverse=True
-    )
-    total, count = np.bincount(group, place[:, 2], len(keys)), np.bincount(group, None, len(keys))
-    return np.column_stack([keys, total, count])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,36 +70,41 @@ class Overlap:
     differences: FloatArray
 
 
-def overlaps(found: LineCells) -> list[Overlap]:
-    """Return the overlaps of every two lines that have a cell in common, in the order of lines.
+class OverlapTally:
+    """Gathers overlaps from parts of the map that have no cell in common.
 
     Examples
     --------
-    >>> two = LineCells(cell_size=2.0, cell=np.array([[0, 0], [0, 0], [1, 0]]),
-    ...     line=np.array([3, 5, 5]), total=np.array([-8.0, -3.0, -3.0]), count=np.array([2, 1, 1]))
-    >>> [(each.lines, each.area, each.differences.tolist()) for each in overlaps(two)]
+    >>> tally = OverlapTally()
+    >>> tally.add(LineCells(cell_size=2.0, cell=np.array([[0, 0], [0, 0], [1, 0]]),
+    ...     line=np.array([3, 5, 5]), elevation=np.array([-4.0, -3.0, -3.0])))
+    >>> [(each.lines, each.area, each.differences.tolist()) for each in tally.overlaps()]
     [((3, 5), 4.0, [1.0])]
     """
-    order = np.lexsort((found.line, found.cell[:, 1], found.cell[:, 0]))
-    cell, line, elevation = found.cell[order], found.line[order], found.elevation[order]
-    parts = []
-    for step in range(1, len(order)):
-        same = (cell[step:] == cell[:-step]).all(axis=1)
-        if not same.any():
-            break
-        first = np.flatnonzero(same)
-        parts.append(
-            np.column_stack(
-                [line[first], line[first + step], elevation[first + step] - elevation[first]]
-            )
-        )
-    pairs = np.concatenate([np.zeros((0, 3)), *parts])
-    names, group = np.unique(pairs[:, :2].astype(np.int64), axis=0, return_inverse=True)
-    return [
-        Overlap(
-            lines=(int(names[i, 0]), int(names[i, 1])),
-            area=float((group == i).sum() * found.cell_size**2),
-            differences=pairs[group == i, 2],
-        )
-        for i in range(len(names))
-    ]
+
+    def __init__(self) -> None:
+        self._cell_area = 0.0
+        self._differences: dict[tuple[int, int], list[FloatArray]] = {}
+
+    def add(self, part: LineCells) -> None:
+        """Add the cells of a part of the map."""
+        self._cell_area = part.cell_size**2
+        order = np.lexsort((part.line, part.cell[:, 1], part.cell[:, 0]))
+        cell, line, elevation = part.cell[order], part.line[order], part.elevation[order]
+        for step in range(1, len(order)):
+            first = np.flatnonzero((cell[step:] == cell[:-step]).all(axis=1))
+            if first.size == 0:
+                return
+            pairs = np.column_stack([line[first], line[first + step]])
+            differences = elevation[first + step] - elevation[first]
+            for pair in np.unique(pairs, axis=0):
+                here = differences[(pairs == pair).all(axis=1)]
+                self._differences.setdefault((int(pair[0]), int(pair[1])), []).append(here)
+
+    def overlaps(self) -> list[Overlap]:
+        """Return the overlaps of every two lines that have a cell in common, by lines."""
+        found = {lines: np.concatenate(parts) for lines, parts in self._differences.items()}
+        return [
+            Overlap(lines=lines, area=len(found[lines]) * self._cell_area, differences=found[lines])
+            for lines in sorted(found)
+        ]

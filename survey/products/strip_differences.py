@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +12,14 @@ from numpy.typing import NDArray
 
 from survey.cloud.overlaps import LineCells, Overlap
 from survey.products.cells import CellGrid
-from survey.products.writing import require_read_back, whole_file
+from survey.products.tif_file import banded_tif
 from terrain.map_frame import MapFrame
 
 FloatArray = NDArray[np.float64]
 DECIMALS = 4
+DIFFERENCES = "strip_differences.tif"
 BANDS = (("difference", "m"), ("lines", "1"))
+EMPTY = (np.nan, 0.0)
 
 
 def overlap_metrics(found: Sequence[Overlap]) -> list[dict[str, Any]]:
@@ -45,61 +48,27 @@ def overlap_metrics(found: Sequence[Overlap]) -> list[dict[str, Any]]:
     ]
 
 
-def difference_raster(found: LineCells) -> tuple[FloatArray, NDArray[np.int64]]:
+def difference_bands(cells: CellGrid, found: LineCells) -> FloatArray:
     """Return the last less the first line's mean elevation [m], and the lines, of every cell.
 
-    Both (rows, columns), row 0 in the north, over the smallest box of cells; the difference is nan
-    below two lines.
+    Two bands (2, rows, columns), row 0 in the north; the difference is nan below two lines.
     """
-    low = found.cell.min(axis=0)
-    columns, rows = found.cell.max(axis=0) - low + 1
-    column, up = (found.cell - low).T
-    index = (rows - 1 - up) * columns + column
+    centre = np.asarray((found.cell + 0.5) * found.cell_size, dtype=np.float64)
+    index = cells.index_of(centre)
+    size = cells.rows * cells.columns
     order = np.lexsort((found.line, index))
-    last, first = np.full((2, rows * columns), np.nan)
+    last, first = np.full((2, size), np.nan)
     last[index[order]] = found.elevation[order]
     first[index[order[::-1]]] = found.elevation[order[::-1]]
-    count = np.bincount(index, minlength=rows * columns)
-    difference = np.where(count > 1, last - first, np.nan)
-    return difference.reshape(rows, columns), count.reshape(rows, columns)
+    count = np.bincount(index, minlength=size)
+    bands = np.stack([np.where(count > 1, last - first, np.nan), count])
+    return bands.reshape(2, *cells.shape)
 
 
-def cell_grid(found: LineCells, map_frame: MapFrame) -> CellGrid:
-    """Return where the raster of `difference_raster` lies on the map."""
-    low = found.cell.min(axis=0)
-    columns, rows = found.cell.max(axis=0) - low + 1
-    west, north = map_frame.origin[:2] + np.array([low[0], low[1] + rows]) * found.cell_size
-    return CellGrid(
-        west=float(west),
-        north=float(north),
-        cell_size=found.cell_size,
-        rows=int(rows),
-        columns=int(columns),
-    )
-
-
-def write_strip_differences(path: Path, found: LineCells, map_frame: MapFrame) -> None:
-    """Write a GeoTIFF, float32: last less first line's mean elevation, and how many lines.
-
-    Raises
-    ------
-    ReadBackError
-        If the file does not read back as written.
-    """
-    import rasterio
-
-    grid = cell_grid(found, map_frame)
-    bands = np.stack(difference_raster(found)).astype(np.float32)
-    profile = {
-        **{"driver": "GTiff", "dtype": "float32", "count": len(BANDS), "nodata": np.nan},
-        **{"height": grid.rows, "width": grid.columns, "transform": grid.transform},
-        **{"crs": rasterio.CRS.from_wkt(map_frame.crs.to_wkt())},
-        **{"compress": "deflate", "predictor": 3, "num_threads": 1},
-    }
-    with whole_file(path) as partial:
-        with rasterio.open(partial, "w", **profile) as file:
-            file.write(bands)
-            file.descriptions = tuple(name for name, _ in BANDS)
-            file.units = tuple(unit for _, unit in BANDS)
-        with rasterio.open(partial) as file:
-            require_read_back(path, "cells", np.array_equal(file.read(), bands, equal_nan=True))
+@contextmanager
+def strip_differences_tif(
+    path: Path, cells: CellGrid, map_frame: MapFrame
+) -> Iterator[Callable[[CellGrid, LineCells], None]]:
+    """Give a function that adds the lines of parts of the map; see `banded_tif`."""
+    with banded_tif(path, cells, map_frame, bands=BANDS, empty=EMPTY) as add:
+        yield lambda part, lines: add(part, difference_bands(part, lines))

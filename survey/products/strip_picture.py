@@ -7,37 +7,42 @@ from pathlib import Path
 
 import numpy as np
 
-from survey.cloud.overlaps import LineCells
-from survey.products.strip_differences import cell_grid, difference_raster
 from survey.products.writing import write_whole
-from terrain.map_frame import MapFrame
 
 DOTS_PER_INCH = 110
 LIMIT_PERCENTILE = 98.0
+MOST_CELLS = 2000
 
 
-def write_strip_picture(
-    path: Path, before: LineCells, after: LineCells, map_frame: MapFrame
-) -> None:
-    """Draw two maps of the last less the first line's elevation, in one scale, as PNG."""
+def write_strip_picture(path: Path, before: Path, after: Path) -> None:
+    """Draw two rasters of `strip_differences_tif` in one scale, as PNG."""
+    import rasterio
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    maps = [difference_raster(found)[0] for found in (before, after)]
+    maps, extents = [], []
+    for file in (before, after):
+        with rasterio.open(file) as raster:
+            step = -(-max(raster.shape) // MOST_CELLS)
+            shape = (-(-raster.height // step), -(-raster.width // step))
+            maps.append(raster.read(1, out_shape=shape))
+            extents.append(
+                (raster.bounds.left, raster.bounds.right, raster.bounds.bottom, raster.bounds.top)
+            )
     sizes = np.abs(maps[0][np.isfinite(maps[0])])
     limit = float(np.percentile(sizes, LIMIT_PERCENTILE)) if sizes.size else 1.0
     figure = Figure(figsize=(9.0, 9.0), layout="constrained")
     FigureCanvasAgg(figure)
     panels = figure.subplots(2, 1, sharex=True, sharey=True)
-    for axes, found, values, words in zip(
-        panels, (before, after), maps, ("as flown", "adjusted"), strict=True
+    for axes, extent, values, words in zip(
+        panels, extents, maps, ("as flown", "adjusted"), strict=True
     ):
         image = axes.imshow(
             values,
             cmap="RdBu",
             vmin=-limit,
             vmax=limit,
-            extent=cell_grid(found, map_frame).extent,
+            extent=extent,
             interpolation="nearest",
         )
         rms = float(np.sqrt(np.nanmean(values**2))) if np.isfinite(values).any() else 0.0
