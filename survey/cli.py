@@ -197,6 +197,35 @@ def effects(
 
 
 @app.command()
+def adjust(
+    folder: Annotated[Path, typer.Argument(metavar="RUN", help="A flown run.")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="DIR", help="Adjusted products.")
+    ],
+    mode: Annotated[
+        Literal["boresight", "offsets"],
+        typer.Option(help="Angles of the mounting and offsets of lines, or offsets alone."),
+    ] = "boresight",
+    largest_error: Annotated[
+        float,
+        typer.Option(
+            "--largest-error-m", min=0.001, help="What is told worse than this is left alone."
+        ),
+    ] = 0.25,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, not a table.")] = False,
+) -> None:
+    """Bring the lines of a run together where their overlaps have shape; the run stays as it is."""
+    from survey import adjustment_report as report
+    from survey.adjustment import adjust_run, write_adjustment
+    from survey.products.json_file import json_bytes
+
+    found = adjust_run(folder, output, mode=mode, largest_error=largest_error)
+    told = report.as_json(found)
+    write_adjustment(output, told)
+    typer.echo(json_bytes(told).decode() if as_json else report.as_text(found), nl=not as_json)
+
+
+@app.command()
 def scenarios() -> None:
     """List the scenarios that come with the package."""
     from survey.scenario.gallery import gallery, title

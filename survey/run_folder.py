@@ -8,7 +8,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from survey.errors import OtherRunError
+from survey.errors import OtherRunError, UserError
 from survey.journal import Note, read_notes, write_note
 from survey.products.frame_file import FrameResult, read_frame, write_frame
 from survey.products.json_file import write_json
@@ -27,7 +27,8 @@ from survey.scenario.scenario import Scenario
 JOURNAL = "journal.jsonl"
 PRODUCTS = (
     *("bottom.*", "water_surface.*", "bathymetry.*", "trajectory.*", "trajectory_*"),
-    *("coverage.geojson", "failures.geojson", "metrics.json", "performance.json", "report.html"),
+    *("coverage.geojson", "failures.geojson", "strip_differences.tif", "metrics.json"),
+    *("performance.json", "report.html"),
 )
 
 
@@ -78,6 +79,26 @@ class RunFolder:
         write_whole(path / SCENARIO, resolved.encode())
         (path / "frames").mkdir(exist_ok=True)
         whole, spoilt = whole_frames(path)
+        return cls(path=path, whole=whole, spoilt=spoilt)
+
+    @classmethod
+    def flown(cls, path: Path) -> RunFolder:
+        """Return a run's folder for reading, whatever code flew it.
+
+        Raises
+        ------
+        FileNotFoundError
+            When there is no run.
+        UserError
+            When none of its frames is whole.
+        """
+        if found_manifest(path) is None or not (path / SCENARIO).exists():
+            raise FileNotFoundError(
+                f"{path}: no run. Give the folder that `bathyflash run -o` wrote"
+            )
+        whole, spoilt = whole_frames(path)
+        if not whole:
+            raise UserError(f"{path}: no frame was flown. Fly it with `bathyflash run`")
         return cls(path=path, whole=whole, spoilt=spoilt)
 
     def frame_path(self, index: int) -> Path:

@@ -49,7 +49,7 @@ class WaterPath:
 
 
 def bend_at_surface(
-    *, position: FloatArray, rays: FloatArray, level: float, refractive_index: float
+    *, position: FloatArray, rays: FloatArray, level: float | FloatArray, refractive_index: float
 ) -> WaterPath:
     """Refract downward rays at a level surface by Snell's law.
 
@@ -59,7 +59,7 @@ def bend_at_surface(
         Where the rays start [m].
     rays : array (..., 3)
         Unit directions.
-    level : float
+    level : float or array (...)
         Elevation of the surface [m].
     refractive_index : float
         Phase index of the water [1].

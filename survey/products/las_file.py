@@ -65,6 +65,7 @@ def write_laz(
     *,
     start_utc: datetime,
     frames: Sequence[Frame],
+    strip_adjustment: str = "none",
 ) -> None:
     """Write a cloud as LAZ (or LAS, by the suffix), every point flagged synthetic.
 
@@ -85,6 +86,8 @@ def write_laz(
         Start of the mission; the file's creation date as well.
     frames : sequence of Frame
         Flashes that the cloud's points name, for the scan angle.
+    strip_adjustment : str
+        How lines were brought together; unless "none" the header's generating software says it.
 
     Raises
     ------
@@ -93,18 +96,27 @@ def write_laz(
     ReadBackError
         If the file does not read back as written.
     """
-    with laz_file(path, map_frame, start_utc=start_utc, frames=frames) as add:
+    with laz_file(
+        path, map_frame, start_utc=start_utc, frames=frames, strip_adjustment=strip_adjustment
+    ) as add:
         add(cloud)
 
 
 @contextmanager
 def laz_file(
-    path: Path, map_frame: MapFrame, *, start_utc: datetime, frames: Sequence[Frame]
+    path: Path,
+    map_frame: MapFrame,
+    *,
+    start_utc: datetime,
+    frames: Sequence[Frame],
+    strip_adjustment: str = "none",
 ) -> Iterator[Callable[[PointCloud], None]]:
     """Give a function that adds points to a LAZ file; see `write_laz`."""
     import laspy
 
     header = _header(map_frame, start_utc)
+    if strip_adjustment != "none":
+        header.generating_software = f"bathyflash adjust {strip_adjustment}"
     views = Views.of(frames)
     count = checksum = 0
     with whole_file(path) as partial:

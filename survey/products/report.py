@@ -43,6 +43,13 @@ SUBSTRATE_COLUMNS = {
     "bias_m": "mean error [m]",
     "rmse_m": "r.m.s. error [m]",
 }
+OVERLAP_COLUMNS = {
+    "area_m2": "area [m<sup>2</sup>]",
+    "cells": "cells",
+    "mean_difference_m": "mean [m]",
+    "rms_difference_m": "r.m.s. [m]",
+    "p95_abs_difference_m": "95 % within [m]",
+}
 STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 62rem;
        margin: 2rem auto; padding: 0 1rem; }
@@ -105,6 +112,7 @@ def write_report(
             _image(outcome_map(coverage), "map of outcomes"),
             *_errors(errors),
             *_substrates(metrics.get("substrates", {})),
+            *_overlaps(metrics.get("overlaps", []), metrics.get("strip_adjustment", "none")),
         ]
     )
     page = (
@@ -152,6 +160,23 @@ def _substrates(found: Mapping[str, Mapping[str, Any]]) -> list[str]:
         cells = "".join(f"<td>{_number(values[key])}</td>" for key in SUBSTRATE_COLUMNS)
         rows.append(f"<tr><td>{escape(name)}</td>{cells}</tr>")
     return ["<h2>What the bottom is made of</h2>", "<table>", *rows, "</table>"]
+
+
+def _overlaps(found: Sequence[Mapping[str, Any]], adjustment: str) -> list[str]:
+    if not found:
+        return []
+    head = "".join(f"<td>{words}</td>" for words in ("lines", *OVERLAP_COLUMNS.values()))
+    rows = [f"<tr>{head}</tr>"]
+    for pair in found:
+        cells = "".join(f"<td>{_number(pair[key])}</td>" for key in OVERLAP_COLUMNS)
+        rows.append(f"<tr><td>{pair['lines'][0]} and {pair['lines'][1]}</td>{cells}</tr>")
+    how = "not adjusted" if adjustment == "none" else f"adjusted: {escape(adjustment)}"
+    return [
+        "<h2>Where lines overlap</h2>",
+        f"<p>Mean elevations of cells, the later less the earlier line; strips {how}. "
+        "strip_differences.tif maps them.</p>",
+        *("<table>", *rows, "</table>"),
+    ]
 
 
 def _number(value: float | None) -> str:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from survey.cloud.overlaps import OverlapTally
 from survey.cloud.points import PointCloud
 from survey.flight.pose import Frame
 from survey.optics.water import WaterColumn
@@ -28,6 +29,11 @@ from survey.products.mesh_files import has_triangles, write_bathymetry_glb
 from survey.products.ply_file import ply_file
 from survey.products.read_ahead import read_ahead
 from survey.products.report import write_report
+from survey.products.strip_differences import (
+    DIFFERENCES,
+    overlap_metrics,
+    strip_differences_tif,
+)
 from survey.products.tif_file import bathymetry_tif
 from survey.products.tile_points import TilePoints, tile_points
 from survey.products.track_files import TrackFormat, write_trajectory_files
@@ -73,6 +79,8 @@ class ProductSettings:
         Key of the order of S-44 that was asked for.
     cubes : sequence of Cube
         On the bottom, for the feature tests.
+    strip_adjustment : str
+        How the lines were brought together: "none", "boresight" or "offsets".
     """
 
     title: str
@@ -88,6 +96,7 @@ class ProductSettings:
     water: WaterColumn
     order: str | None
     cubes: Sequence[Cube]
+    strip_adjustment: str = "none"
 
     @property
     def reach(self) -> float:
@@ -138,7 +147,7 @@ def write_products(
     look.require_bottom()
     area = look.hull.ring() if settings.survey_area is None else settings.survey_area
     raster = look.raster(cell_size=settings.grid)
-    overview, substrates = Overview(raster), look.substrates
+    overview, substrates, overlaps = Overview(raster), look.substrates, OverlapTally()
     coverage = CoverageTally(
         survey_area=area + map_frame.origin[:2], cell_size=settings.grid, reach=settings.reach
     )
@@ -157,11 +166,14 @@ def write_products(
     with (
         _point_files(folder, look, frames, map_frame, settings) as add_points,
         bathymetry_tif(folder / "bathymetry.tif", raster, map_frame) as add_cells,
+        strip_differences_tif(folder / DIFFERENCES, raster, map_frame) as add_lines,
     ):
         for part in _parts(look, read, frames, map_frame, settings, watch):
             grid = gridded(solid_places(part.bottom, map_frame), part.tile.cells)
             add_points(part)
             add_cells(grid)
+            add_lines(part.tile.cells, part.lines)
+            overlaps.add(part.lines)
             overview.add(grid)
             coverage.add(part.looked_at, part.outcomes, part.tile.cells)
             accuracy.add(part.bottom, part.surface)
@@ -170,6 +182,8 @@ def write_products(
     found = accuracy.metrics(
         pixels=look.pixels, elevation_at=seabed.elevation_at, water=settings.water
     )
+    found["strip_adjustment"] = settings.strip_adjustment
+    found["overlaps"] = overlap_metrics(overlaps.overlaps())
     found["substrates"] = substrates.metrics(seabed.substrate_names)
     judged = verdict.judged(coverage.map(), asked=settings.order)
     found |= judged.metrics
@@ -247,7 +261,11 @@ def _point_files(
     def cloud_files(name: str) -> list[Callable[[PointCloud], None]]:
         ply = ply_file(folder / f"{name}.ply", map_frame)
         laz = laz_file(
-            folder / f"{name}.laz", map_frame, start_utc=settings.start_utc, frames=frames
+            folder / f"{name}.laz",
+            map_frame,
+            start_utc=settings.start_utc,
+            frames=frames,
+            strip_adjustment=settings.strip_adjustment,
         )
         return [files.enter_context(ply), files.enter_context(laz)]
 

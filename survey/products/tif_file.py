@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import product
 from pathlib import Path
@@ -23,8 +23,9 @@ if TYPE_CHECKING:
     from rasterio.io import DatasetWriter
 
 BANDS = (("elevation", "m"), ("density", "1/m2"), ("standard_deviation", "m"))
-EMPTY = np.array([np.nan, 0.0, np.nan], np.float32)[:, None, None]
+EMPTY = (np.nan, 0.0, np.nan)
 CACHE_BYTES = 1 << 26
+FloatArray = NDArray[np.float64]
 Window = tuple[tuple[int, int], tuple[int, int]]
 
 
@@ -38,12 +39,39 @@ def write_bathymetry_tif(path: Path, grid: ElevationGrid, map_frame: MapFrame) -
 def bathymetry_tif(
     path: Path, cells: CellGrid, map_frame: MapFrame
 ) -> Iterator[Callable[[ElevationGrid], None]]:
-    """Give a function that adds parts of a grid to a tiled GeoTIFF of float32.
+    """Give a function that adds parts of a grid: elevation, density and standard deviation.
 
-    Its bands are elevation, density and standard deviation. North is up, edges are whole multiples
-    of the cell size, the CRS is compound, empty cells are nan (in the density band 0).
+    Empty cells are nan (in the density band 0); see `banded_tif`.
+    """
+    with banded_tif(path, cells, map_frame, bands=BANDS, empty=EMPTY) as add:
+        yield lambda grid: add(grid.cells, np.stack([grid.elevation, grid.density, grid.deviation]))
 
-    Parts do not overlap, and lie on whole blocks or, one after another, inside one.
+
+@contextmanager
+def banded_tif(
+    path: Path,
+    cells: CellGrid,
+    map_frame: MapFrame,
+    *,
+    bands: Sequence[tuple[str, str]],
+    empty: Sequence[float],
+) -> Iterator[Callable[[CellGrid, FloatArray], None]]:
+    """Give a function that adds parts of a raster to a tiled GeoTIFF of float32.
+
+    North is up, edges are whole multiples of the cell size, the CRS is compound. Parts are some
+    cells and their bands; they do not overlap, and lie on whole blocks or, one after another,
+    inside one.
+
+    Parameters
+    ----------
+    path : Path
+    cells : CellGrid
+        Of the whole raster.
+    map_frame : MapFrame
+    bands : sequence of (str, str)
+        Names and units.
+    empty : sequence of float
+        Values of each band where there is no part.
 
     Raises
     ------
@@ -53,7 +81,7 @@ def bathymetry_tif(
     import rasterio
 
     profile = {
-        **{"driver": "GTiff", "dtype": "float32", "count": len(BANDS), "nodata": np.nan},
+        **{"driver": "GTiff", "dtype": "float32", "count": len(bands), "nodata": np.nan},
         **{"height": cells.rows, "width": cells.columns},
         **{"crs": rasterio.CRS.from_wkt(map_frame.crs.to_wkt())},
         **{"transform": cells.transform, "compress": "deflate", "predictor": 3},
@@ -61,9 +89,9 @@ def bathymetry_tif(
     }
     with whole_file(path) as partial, rasterio.Env(GDAL_CACHEMAX=CACHE_BYTES):
         with rasterio.open(partial, "w", **profile) as file:
-            file.descriptions = tuple(name for name, _ in BANDS)
-            file.units = tuple(unit for _, unit in BANDS)
-            blocks = _Blocks(file, cells)
+            file.descriptions = tuple(name for name, _ in bands)
+            file.units = tuple(unit for _, unit in bands)
+            blocks = _Blocks(file, cells, empty)
             yield blocks.add
             blocks.fill()
         with rasterio.open(partial) as file:
@@ -73,16 +101,16 @@ def bathymetry_tif(
 class _Blocks:
     """Writes parts, knows which blocks hold none, and remembers what was written where."""
 
-    def __init__(self, file: DatasetWriter, cells: CellGrid) -> None:
+    def __init__(self, file: DatasetWriter, cells: CellGrid, empty: Sequence[float]) -> None:
         self._file, self._cells = file, cells
+        self._empty = np.array(empty, np.float32)[:, None, None]
         self._untouched = {place for place, _ in file.block_windows()}
         self._written: list[tuple[Window, int]] = []
 
-    def add(self, grid: ElevationGrid) -> None:
-        """Write a part of the grid; what lies outside the raster is left out."""
-        rows, columns = self._cells.window(grid.cells)
-        inside = grid.cells.window(self._cells)
-        bands = np.stack([grid.elevation, grid.density, grid.deviation])[:, *inside]
+    def add(self, part: CellGrid, values: FloatArray) -> None:
+        """Write a part of the raster; what lies outside it is left out."""
+        rows, columns = self._cells.window(part)
+        bands = values[:, *part.window(self._cells)]
         if bands.size == 0:
             return
         touched = product(_blocks_along(rows), _blocks_along(columns))
@@ -106,8 +134,8 @@ class _Blocks:
     def _clear(self, place: tuple[int, int]) -> None:
         """Write an empty block, or GDAL would take nan for the density around a part."""
         window = self._file.block_window(1, *place)
-        shape = (len(BANDS), window.height, window.width)
-        self._file.write(np.broadcast_to(EMPTY, shape), window=window)
+        shape = (len(self._empty), window.height, window.width)
+        self._file.write(np.broadcast_to(self._empty, shape), window=window)
         self._untouched.discard(place)
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from survey.cloud.overlaps import SOLID, LineCells, line_cells
 from survey.cloud.points import PointCloud
 from survey.cloud.stitch import kept_points
 from survey.products.coverage import looked_at
@@ -33,6 +34,8 @@ class TilePoints:
         What became of the bottom there.
     flash : array (n,)
         Which of the tile's frames looked there, counted from 0 in the order of the places.
+    lines : LineCells
+        Mean elevations of each line in the tile, from all its points.
     """
 
     tile: MapTile
@@ -41,6 +44,7 @@ class TilePoints:
     looked_at: FloatArray
     outcomes: NDArray[np.uint8]
     flash: NDArray[np.intp]
+    lines: LineCells
 
 
 def tile_points(
@@ -63,13 +67,15 @@ def tile_points(
     """
     parts = [_in_reach(tile, result, map_frame) for result in results]
     bottom, surface, places, outcomes = zip(*parts, strict=True)
+    whole = PointCloud.concatenate(bottom)
     return TilePoints(
         tile=tile,
-        bottom=_thinned(tile, PointCloud.concatenate(bottom), thinning, map_frame),
+        bottom=_thinned(tile, whole, thinning, map_frame),
         surface=_thinned(tile, PointCloud.concatenate(surface), thinning, map_frame),
         looked_at=np.concatenate(places),
         outcomes=np.concatenate(outcomes),
         flash=np.repeat(np.arange(len(places)), [len(here) for here in places]),
+        lines=_line_cells(tile, whole, map_frame),
     )
 
 
@@ -93,3 +99,9 @@ def _some(cloud: PointCloud, which: NDArray[np.bool_]) -> PointCloud:
 def _thinned(tile: MapTile, cloud: PointCloud, thinning: float, map_frame: MapFrame) -> PointCloud:
     kept = kept_points(cloud, cell_size=thinning)
     return cloud.select(kept[tile.contains(map_frame.to_map(cloud.position[kept]))])
+
+
+def _line_cells(tile: MapTile, cloud: PointCloud, map_frame: MapFrame) -> LineCells:
+    on_map = map_frame.to_map(cloud.position)
+    solid = np.isin(cloud.classification, SOLID) & tile.contains(on_map)
+    return line_cells(on_map[solid], cloud.line[solid], cell_size=tile.cells.cell_size)

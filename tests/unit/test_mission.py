@@ -30,7 +30,7 @@ PRODUCTS = {
     *("scenario.toml", "manifest.json", "journal.jsonl", "trajectory.csv", "bottom.laz"),
     *("water_surface.laz", "bottom.ply", "water_surface.ply", "bathymetry.tif", "bathymetry.glb"),
     *("coverage.geojson", "failures.geojson", "metrics.json", "performance.json", "report.html"),
-    *("log.txt", ".lock"),
+    *("strip_differences.tif", "log.txt", ".lock"),
     *(f"frames/{number:06d}.npz" for number in range(3)),
 }
 DIFFERS_BY_RUN = {"performance.json", "journal.jsonl", "log.txt"}

@@ -1,0 +1,104 @@
+"""Adjusting a flown run: what stands in the way, and what a real flight gains."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from survey.adjustment import adjust_run, pooled_rms, write_adjustment
+from survey.adjustment_report import as_json, as_text
+from survey.adjustment_truth import true_mounting
+from survey.errors import UserError
+from survey.exit_status import BAD_INPUT, FILE_MISSING, explain
+from survey.flight.navigation import Mounting, Navigation
+from survey.mission import fly
+from survey.scenario.load import load_scenario
+
+
+def status(run: Path, output: Path) -> tuple[int, str]:
+    with pytest.raises((UserError, OSError)) as fault:
+        adjust_run(run, output, mode="boresight")
+    return explain(fault.value)
+
+
+def test_a_missing_run_or_a_wrong_place_says_so(tmp_path: Path) -> None:
+    run, full, file = tmp_path / "run", tmp_path / "full", tmp_path / "file"
+    code, words = status(run, tmp_path / "new")
+    assert (code, "no run" in words) == (FILE_MISSING, True)
+    for folder in (run, full):
+        folder.mkdir()
+        (folder / "manifest.json").write_text('{"scenario_sha256": "0"}')
+        (folder / "scenario.toml").write_text("")
+    file.write_text("")
+    for output, reason in (
+        (tmp_path / "new", "no frame was flown"),
+        (run, "the run itself"),
+        (full, "holds files but no adjustment"),
+        (file, "a file"),
+    ):
+        code, words = status(run, output)
+        assert code == BAD_INPUT
+        assert reason in words
+    assert not (tmp_path / "new").exists()
+
+
+def test_true_mounting_is_the_turn_and_arm_that_is_missing() -> None:
+    true = Mounting(roll=0.02, pitch=-0.01, heading=0.3, lever_arm=(1.0, 0.0, 0.5))
+    plain = true_mounting(Navigation(mounting=true))
+    assert (plain.roll, plain.pitch, plain.heading) == pytest.approx((0.02, -0.01, 0.3))
+    assert plain.lever_arm == true.lever_arm
+    known = true_mounting(Navigation(mounting=true, believed_mounting=true))
+    assert (known.roll, known.pitch, known.heading) == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)
+
+
+def test_pooled_differences_weigh_by_cells() -> None:
+    pairs = [{"cells": 3, "rms_difference_m": 1.0}, {"cells": 1, "rms_difference_m": 3.0}]
+    assert pooled_rms(pairs) == pytest.approx(np.sqrt(3.0))
+
+
+@pytest.mark.slow
+def test_a_flown_calibration_is_found_and_the_points_come_right(tmp_path: Path) -> None:
+    """The gallery's flight: three angles within 3 standard errors; errors fall by a factor 3."""
+    run = fly(load_scenario("boresight"), tmp_path / "run")
+    untouched = {path: path.read_bytes() for path in run.rglob("*") if path.is_file()}
+    found = adjust_run(run, tmp_path / "adjusted", mode="boresight")
+    told = as_json(found)
+    write_adjustment(tmp_path / "adjusted", told)
+    angles = [row for row in told["mounting"] if row["name"].endswith("_deg")]
+    assert [row["name"] for row in angles] == ["roll_deg", "pitch_deg", "heading_deg"]
+    assert [row["true"] for row in angles] == pytest.approx([0.3, 0.2, 0.5], abs=1e-4)
+    for row in angles:
+        assert row["determined"]
+        assert abs(row["correction"] - row["true"]) < 3.0 * row["standard_error"]
+    assert found.after.horizontal < found.before.horizontal / 3.0
+    assert found.after.elevation < found.before.elevation
+    assert pooled_rms(found.overlaps_after) < 0.75 * pooled_rms(found.overlaps_before)
+    assert {path: path.read_bytes() for path in run.rglob("*") if path.is_file()} == untouched
+    _states_what_it_is(tmp_path / "adjusted")
+    assert "truly +0.300" in as_text(found)
+    again = adjust_run(run, tmp_path / "adjusted", mode="boresight")
+    assert as_json(again) == told
+
+
+def _states_what_it_is(folder: Path) -> None:
+    import laspy
+
+    metrics: dict[str, Any] = json.loads((folder / "metrics.json").read_text())
+    assert metrics["strip_adjustment"] == "boresight"
+    assert "strips adjusted" in (folder / "report.html").read_text()
+    with laspy.open(str(folder / "bottom.laz")) as file:
+        assert file.header.generating_software == "bathyflash adjust boresight"
+
+
+@pytest.mark.slow
+def test_a_flat_bottom_is_refused_and_nothing_is_written(tmp_path: Path) -> None:
+    level = {"seabed.kind": "plane", "seabed.roughness_rms_m": 0.0}
+    run = fly(load_scenario("boresight", level), tmp_path / "run")
+    for mode in ("boresight", "offsets"):
+        with pytest.raises(UserError, match="refused: the overlaps carry too little shape"):
+            adjust_run(run, tmp_path / "adjusted", mode=mode)
+    assert not (tmp_path / "adjusted").exists()
