@@ -175,18 +175,22 @@ def _labels(seen: Observation) -> Values:
     targets, record, bottom = seen.targets, seen.result.record, seen.result.bottom
     shape = targets.depth.shape
     in_air = np.linalg.norm(targets.surface - seen.frame.pose.position, axis=-1)
+    normal = dict(zip(("east", "north", "up"), bottom.true_normal.T, strict=True))
     return {
         "detected_surface_time": seen.first.time,
         "detected_bottom_time": seen.bottom.time,
         "classification": bottom.classification.reshape(shape),
         "outcome": record.outcome,
         "detection_probability": record.detection_probability,
+        "tvu": bottom.tvu.reshape(shape),
+        "thu": bottom.thu.reshape(shape),
         "true_surface_time": 2.0 * in_air / speed_of_light,
         "true_bottom_time": targets.time,
         "true_depth": targets.depth,
         "water_path": np.linalg.norm(targets.position - targets.surface, axis=-1),
         "true_classification": targets.classification,
         "substrate": targets.substrate,
+        **{f"surface_normal_{axis}": part.reshape(shape) for axis, part in normal.items()},
     }
 
 

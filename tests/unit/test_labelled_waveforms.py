@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,7 @@ from survey.preparation import prepare
 from survey.products.frame_file import read_frame, read_raw
 from survey.scenario.scenario import Scenario
 
+PAGE = Path(__file__).parents[2] / "docs/waveforms.md"
 CAMERA = (4, 8)
 ALL = Pixels.every(1, CAMERA)
 TABLES: dict[str, Any] = {
@@ -362,3 +364,21 @@ def test_folders_that_are_no_runs_are_named(run: FlownRun, tmp_path: Path) -> No
     strange = typed(run.folder, "-o", tmp_path / "mine", "--overwrite")
     assert (strange.exit_code, "holds something else" in strange.stderr) == (2, True)
     assert (tmp_path / "mine/thesis.txt").exists()
+
+
+def test_the_page_s_example_gives_training_pairs(
+    written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (example,) = re.findall(r"```python\n(.+?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+    shutil.copytree(written, tmp_path / "sandbar.zarr")
+    monkeypatch.chdir(tmp_path)
+    got: dict[str, Any] = {}
+    exec(example, got)
+    histogram, place, share = got["histogram"], got["place"], got["share"]
+    assert histogram.shape == share.shape == (len(place), 300)
+    assert len(place) > 50
+    strongest = share.argmax(axis=1)
+    assert np.abs(strongest - place).max() < 8.0
+    bins = np.arange(300)
+    near = np.abs(bins - place[:, None]) < 12.0
+    assert (histogram.max(axis=1, where=near, initial=0) > 0).all()
