@@ -63,8 +63,8 @@ def labelled_waveforms(
     ...     "camera.rows": 2, "camera.columns": 4, "transport.walks_per_pixel": 16,
     ...     "transport.tracks_per_replicate": 64}))
     >>> found = labelled_waveforms(mission, mission.frames[0])
-    >>> dict(found.counts.sizes)
-    {'frame': 1, 'row': 2, 'column': 4, 'bin': 300}
+    >>> found.counts.dims, found.counts.shape[:3]
+    (('frame', 'row', 'column', 'bin'), (1, 2, 4))
     >>> found.bin_time.units, found.expected_bottom.long_name
     ('s', 'expected photo-electrons of bottom and land in one bin of one pulse')
     """
