@@ -211,9 +211,8 @@ def _water(mission: Mission) -> Values:
 def _tags(tags: TimeTags, pixels: Pixels) -> Values:
     """Return the tags of the chosen pixels, sorted by row, column, pulse and time."""
     kept = np.isin(tags.row, pixels.rows) & np.isin(tags.column, pixels.columns)
-    row, column, pulse, time = (
-        each[kept] for each in (tags.row, tags.column, tags.pulse, tags.time)
-    )
+    row, column, pulse = tags.row[kept], tags.column[kept], tags.pulse[kept]
+    time = tags.time[kept]
     order = np.lexsort((time, pulse, column, row))
     count = np.zeros(pixels.shape, np.int32)
     place = (
