@@ -63,8 +63,8 @@ def labelled_waveforms(
     ...     "camera.rows": 2, "camera.columns": 4, "transport.walks_per_pixel": 16,
     ...     "transport.tracks_per_replicate": 64}))
     >>> found = labelled_waveforms(mission, mission.frames[0])
-    >>> dict(found.counts.sizes)
-    {'frame': 1, 'row': 2, 'column': 4, 'bin': 300}
+    >>> found.counts.dims, found.counts.shape[:3]
+    (('frame', 'row', 'column', 'bin'), (1, 2, 4))
     >>> found.bin_time.units, found.expected_bottom.long_name
     ('s', 'expected photo-electrons of bottom and land in one bin of one pulse')
     """
@@ -175,18 +175,22 @@ def _labels(seen: Observation) -> Values:
     targets, record, bottom = seen.targets, seen.result.record, seen.result.bottom
     shape = targets.depth.shape
     in_air = np.linalg.norm(targets.surface - seen.frame.pose.position, axis=-1)
+    normal = dict(zip(("east", "north", "up"), bottom.true_normal.T, strict=True))
     return {
         "detected_surface_time": seen.first.time,
         "detected_bottom_time": seen.bottom.time,
         "classification": bottom.classification.reshape(shape),
         "outcome": record.outcome,
         "detection_probability": record.detection_probability,
+        "tvu": bottom.tvu.reshape(shape),
+        "thu": bottom.thu.reshape(shape),
         "true_surface_time": 2.0 * in_air / speed_of_light,
         "true_bottom_time": targets.time,
         "true_depth": targets.depth,
         "water_path": np.linalg.norm(targets.position - targets.surface, axis=-1),
         "true_classification": targets.classification,
         "substrate": targets.substrate,
+        **{f"surface_normal_{axis}": part.reshape(shape) for axis, part in normal.items()},
     }
 
 
@@ -207,9 +211,8 @@ def _water(mission: Mission) -> Values:
 def _tags(tags: TimeTags, pixels: Pixels) -> Values:
     """Return the tags of the chosen pixels, sorted by row, column, pulse and time."""
     kept = np.isin(tags.row, pixels.rows) & np.isin(tags.column, pixels.columns)
-    row, column, pulse, time = (
-        each[kept] for each in (tags.row, tags.column, tags.pulse, tags.time)
-    )
+    row, column, pulse = tags.row[kept], tags.column[kept], tags.pulse[kept]
+    time = tags.time[kept]
     order = np.lexsort((time, pulse, column, row))
     count = np.zeros(pixels.shape, np.int32)
     place = (

@@ -126,8 +126,8 @@ def _depth_axis(axes: Axes, pixel: xarray.Dataset) -> None:
     axis = axes.secondary_xaxis(
         "top",
         functions=(
-            lambda time: (time - start / NANO) * speed,
-            lambda depth: depth / speed + start / NANO,
+            lambda time: (np.asarray(time) - start / NANO) * speed,
+            lambda depth: np.asarray(depth) / speed + start / NANO,
         ),
     )
     axis.set_xlabel("depth under the true surface along the ray [m]")

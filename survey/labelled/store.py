@@ -11,7 +11,7 @@ import hashlib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -28,7 +28,7 @@ BYTES_OF_A_BIN = 4
 FRAMES_OF_A_SCALAR = 4096
 TAGS_OF_A_CHUNK = 1 << 20
 ZSTD_LEVEL = 5
-FORMAT = 2
+FORMAT: Final = 2
 FRAMES_ATTRIBUTE = "frames"
 
 
@@ -130,7 +130,8 @@ def open_waveforms(path: Path, *, chunks: Any = "auto") -> xarray.Dataset:
     fault = _fault(path)
     if fault:
         raise UserError(f"{path}: not a whole set of waveforms: {fault}. Write it again")
-    return xarray.open_zarr(path, chunks=chunks)
+    found: xarray.Dataset = xarray.open_zarr(path, chunks=chunks)
+    return found
 
 
 def _fault(path: Path) -> str:

@@ -77,6 +77,12 @@ def _two_way_time(words: str) -> Variable:
     return Variable(dims=PIXEL, dtype="f8", words=f"two-way time after emission {words}", units="s")
 
 
+def _uncertainty(words: str) -> Variable:
+    return Variable(
+        dims=PIXEL, dtype="f4", words=f"total {words} uncertainty of the point, 95 %", units="m"
+    )
+
+
 def _codes(words: str, codes: Mapping[int, str]) -> Variable:
     return Variable(dims=PIXEL, dtype="u1", words=words, units=None, more=flags(codes))
 
@@ -193,6 +199,8 @@ LABELS = {
     "detection_probability": Variable(
         dims=PIXEL, dtype="f4", words="probability that the true bottom echo fires its threshold"
     ),
+    "tvu": _uncertainty("vertical"),
+    "thu": _uncertainty("horizontal"),
     "true_surface_time": _two_way_time("to the water, or to land"),
     "true_bottom_time": _two_way_time("to seabed or land along the unscattered ray"),
     "true_depth": Variable(
@@ -205,6 +213,12 @@ LABELS = {
     "water_path": Variable(
         dims=PIXEL, dtype="f4", words="one way of the unscattered ray in water", units="m"
     ),
+    **{
+        f"surface_normal_{axis}": Variable(
+            dims=PIXEL, dtype="f4", words=f"component {axis} of the unit normal of the water there"
+        )
+        for axis in ("east", "north", "up")
+    },
     **{
         f"surface_{axis}": variable
         for axis, variable in _place("where that ray truly meets the water, or land").items()
