@@ -33,7 +33,7 @@ from survey.products.verdict.features import Cube, CubeTally
 from survey.products.verdict.mission import Judged, VerdictTally
 from survey.products.verdict.passes import Passes, PassTally
 from survey.products.verdict.report import verdict_section
-from survey.products.verdict.tally import ErrorTally, interval, percentile
+from survey.products.verdict.tally import OrderTally, interval, percentile
 from survey.products.verdict.uncertainty import judge_errors
 from survey.products.verdict.words import verdict_lines, verdict_sentence
 
@@ -74,8 +74,8 @@ def points(survey: Any, depth: FloatArray, error: FloatArray, aside: FloatArray)
     )
 
 
-def tallied(*clouds: PointCloud) -> ErrorTally:
-    tally = ErrorTally(orders=list(ORDERS.values()))
+def tallied(*clouds: PointCloud) -> OrderTally:
+    tally = OrderTally(orders=list(ORDERS.values()))
     for cloud in clouds:
         tally.add(cloud, water_level=LEVEL)
     return tally
