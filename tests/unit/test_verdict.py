@@ -33,7 +33,7 @@ from survey.products.verdict.features import Cube, CubeTally
 from survey.products.verdict.mission import Judged, VerdictTally
 from survey.products.verdict.passes import Passes, PassTally
 from survey.products.verdict.report import verdict_section
-from survey.products.verdict.tally import ErrorTally, interval, percentile
+from survey.products.verdict.tally import OrderTally, interval, percentile
 from survey.products.verdict.uncertainty import judge_errors
 from survey.products.verdict.words import verdict_lines, verdict_sentence
 
@@ -74,8 +74,8 @@ def points(survey: Any, depth: FloatArray, error: FloatArray, aside: FloatArray)
     )
 
 
-def tallied(*clouds: PointCloud) -> ErrorTally:
-    tally = ErrorTally(orders=list(ORDERS.values()))
+def tallied(*clouds: PointCloud) -> OrderTally:
+    tally = OrderTally(orders=list(ORDERS.values()))
     for cloud in clouds:
         tally.add(cloud, water_level=LEVEL)
     return tally
@@ -85,11 +85,14 @@ def tallied(*clouds: PointCloud) -> ErrorTally:
 def test_one_point_too_many_outside_the_limit_fails(
     small_survey: Any, outside: int, result: str
 ) -> None:
-    """Of 200 points at 10.5 m ten may exceed 0.262 m, and ten may lie more than 2 m aside."""
+    """Of 200 points at 10.5 m ten may exceed 0.262 m, and ten may lie more than 2 m aside.
+
+    The others err by 0.255 m: over the limit at the surface, under that at their depth.
+    """
     wrong = np.arange(200) < outside
     depth, zeros = np.full(200, 10.5), np.zeros(200)
     beyond = float(ORDERS["special"].tvu(10.5)) + 1e-6
-    deep = tallied(points(small_survey, depth, np.where(wrong, -beyond, 0.2), zeros))
+    deep = tallied(points(small_survey, depth, np.where(wrong, -beyond, 0.255), zeros))
     found = judge_errors(deep, ORDERS["special"], "tvu")
     assert (found.result, found.figure) == (result, 1.0 - outside / 200)
     aside = tallied(points(small_survey, depth, zeros, np.where(wrong, 2.001, 1.999)))

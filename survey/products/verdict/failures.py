@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from survey.cloud.points import Outcome, PointCloud
 from survey.cloud.truth import FALSE_BOTTOM_ERROR
+from survey.products.accuracy import BOTTOM_CLASSES
 from survey.products.cells import CellGrid
 from survey.products.coverage import GAP_CAUSE, cell_polygons, map_feature
 from survey.products.json_file import json_bytes
@@ -19,7 +20,7 @@ from survey.products.standards import Order
 from survey.products.standards.orders import WITHIN
 from survey.products.verdict.features import FoundCube
 from survey.products.verdict.passes import Passes
-from survey.products.verdict.tally import BOTTOM, errors_of
+from survey.products.verdict.tally import errors_of
 from survey.products.writing import write_whole
 from terrain.map_frame import MapFrame
 
@@ -65,7 +66,7 @@ class FailureCells:
         window = self.cells.window(cells or self.cells)
         part = self.cells.part(window)
         cloud = cloud.select(
-            np.isin(cloud.classification, BOTTOM) & np.isfinite(cloud.true_elevation)
+            np.isin(cloud.classification, BOTTOM_CLASSES) & np.isfinite(cloud.true_elevation)
         )
         on_map = cloud.position + self.origin
         here = part.contains(on_map)

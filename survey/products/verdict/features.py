@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.points import PointCloud
-from survey.products.verdict.tally import BOTTOM
+from survey.products.accuracy import BOTTOM_CLASSES, ElevationAt
 
 FloatArray = NDArray[np.float64]
-ElevationAt = Callable[[FloatArray, FloatArray], FloatArray]
 
 ENOUGH_POINTS = 3
 """Assumed: fewer points that stand out are taken for noise, and cleaned away."""
@@ -98,7 +97,7 @@ class CubeTally:
 
     def add(self, cloud: PointCloud) -> None:
         """Count the points of a cloud in the local frame."""
-        places = cloud.position[np.isin(cloud.classification, BOTTOM)]
+        places = cloud.position[np.isin(cloud.classification, BOTTOM_CLASSES)]
         for number, cube in enumerate(self.cubes):
             bed, top = self.beds[number], self.tops[number]
             height = places[cube.holds(places[:, :2]), 2]

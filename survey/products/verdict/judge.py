@@ -17,7 +17,7 @@ from survey.products.verdict.density import DensityTally
 from survey.products.verdict.extent import judge_coverage, judge_features
 from survey.products.verdict.features import FoundCube
 from survey.products.verdict.passes import Passes
-from survey.products.verdict.tally import ErrorTally
+from survey.products.verdict.tally import OrderTally
 from survey.products.verdict.uncertainty import judge_errors
 
 
@@ -27,7 +27,7 @@ class Evidence:
 
     Parameters
     ----------
-    errors : ErrorTally
+    errors : OrderTally
     passes : Passes
     coverage : CoverageMap
         On the cells of `passes`.
@@ -40,7 +40,7 @@ class Evidence:
         [m].
     """
 
-    errors: ErrorTally
+    errors: OrderTally
     passes: Passes
     coverage: CoverageMap
     cubes: Sequence[FoundCube]

@@ -19,7 +19,7 @@ from survey.products.verdict.failures import FailureCells, FailureMap
 from survey.products.verdict.features import Cube, CubeTally
 from survey.products.verdict.judge import Evidence, cubes_in_area, judge_norway, judge_s44
 from survey.products.verdict.passes import Passes, PassTally
-from survey.products.verdict.tally import ErrorTally
+from survey.products.verdict.tally import OrderTally
 from terrain.seabed import Seabed
 
 FloatArray = NDArray[np.float64]
@@ -70,7 +70,7 @@ class VerdictTally:
     ) -> None:
         origin = seabed.map_frame.origin
         self._seabed, self._water_level = seabed, water_level
-        self._errors = ErrorTally(orders=list(orders().values()))
+        self._errors = OrderTally(orders=list(orders().values()))
         self._passes = PassTally(cells=cells, reach=reach)
         self._cubes = CubeTally(cubes=cubes, elevation_at=seabed.elevation_at)
         self._density = DensityTally(cells=_local_cells(cells, origin))

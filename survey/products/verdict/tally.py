@@ -8,14 +8,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import PointClass, PointCloud
+from survey.cloud.points import PointCloud
 from survey.cloud.truth import FALSE_BOTTOM_ERROR
+from survey.products.accuracy import BOTTOM_CLASSES
 from survey.products.standards import Order
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-BOTTOM = (PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT)
 BIN = 1.0  # [m] of depth
 BINS = 200
 ERROR_STEP = 0.005  # [m]
@@ -29,7 +29,7 @@ def _by_depth() -> IntArray:
 
 
 @dataclass(kw_only=True)
-class ErrorTally:
+class OrderTally:
     """How far bottom points lie from the truth, by true depth, and how many are within each order.
 
     Vertical errors are measured less true elevation at the measured place, horizontal ones the
@@ -54,7 +54,7 @@ class ErrorTally:
 
     def add(self, cloud: PointCloud, *, water_level: float) -> None:
         """Count the bottom points of a cloud; its water level stands in the vertical datum [m]."""
-        known = np.isin(cloud.classification, BOTTOM) & np.isfinite(cloud.true_elevation)
+        known = np.isin(cloud.classification, BOTTOM_CLASSES) & np.isfinite(cloud.true_elevation)
         cloud = cloud.select(known)
         error, aside = errors_of(cloud)
         depth = np.maximum(water_level - cloud.true_elevation, 0.0)

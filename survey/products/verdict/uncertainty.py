@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 from survey.products.standards import Order
 from survey.products.standards.orders import WITHIN
 from survey.products.verdict.criterion import Criterion, percent, rounded
-from survey.products.verdict.tally import BIN, ENOUGH, ErrorTally, interval, percentile
+from survey.products.verdict.tally import BIN, ENOUGH, OrderTally, interval, percentile
 
 IntArray = NDArray[np.int64]
 Kind = Literal["tvu", "thu"]
 
 
-def judge_errors(tally: ErrorTally, order: Order, kind: Kind) -> Criterion:
+def judge_errors(tally: OrderTally, order: Order, kind: Kind) -> Criterion:
     """Judge errors of one kind: in every range of depth 95 % must lie within the order's limit.
 
     The limit is that at each point's own depth. Fewer than `ENOUGH` points in all cannot show it.
@@ -41,7 +41,7 @@ def judge_errors(tally: ErrorTally, order: Order, kind: Kind) -> Criterion:
 
 
 def _range(
-    tally: ErrorTally, order: Order, kind: Kind, within: IntArray, first: int, last: int
+    tally: OrderTally, order: Order, kind: Kind, within: IntArray, first: int, last: int
 ) -> dict[str, Any]:
     part = slice(first, last)
     points, inside = int(tally.points[part].sum()), int(within[part].sum())
