@@ -35,8 +35,9 @@ LARGEST_SHARE = 0.5
 RESOLVED = 0.5
 """Share of an unknown in the directions that are corrected, from which it counts as solved."""
 FEWEST_MATCHES = 200
-FEWEST_STEPS, MOST_STEPS = 4, 12
-"""The first look at strips far apart takes their distance for noise, and less for told."""
+FEWEST_STEPS, MOST_STEPS, DAMPING = 4, 16, 0.5
+"""The first look at strips far apart takes their distance for noise, and less for told. Later steps
+are halved, for neighbours that change to and fro would keep whole ones going for ever."""
 SMALL_STEP = 0.3
 """Step over standard error at which strips are at rest: some neighbours change for ever."""
 LEAST_STEP = 0.002  # [m]
@@ -154,7 +155,7 @@ def adjust(
         step = _solved(system, unknowns, noise, values)
         covariance = _covariance(system, unknowns, noise, frame_deviations)
         kept = _kept(covariance, unknowns, largest_error)
-        values = values + step
+        values = values + (step if number < FEWEST_STEPS else DAMPING * step)
         told = np.abs(kept @ (step / unknowns.expected)) * unknowns.expected
         small = np.maximum(SMALL_STEP * _errors(covariance, unknowns), LEAST_STEP)
         if number + 1 >= FEWEST_STEPS and (told < small).all():
