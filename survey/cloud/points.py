@@ -143,3 +143,14 @@ class PixelRecord:
     outcome: NDArray[np.uint8]
     bottom_counts: NDArray[np.float64]
     monte_carlo_relative_error: NDArray[np.float64]
+
+    @staticmethod
+    def concatenate(records: Sequence[PixelRecord]) -> PixelRecord:
+        """Return the records of several frames of one camera, one under the other."""
+        names = [field.name for field in fields(PixelRecord)]
+        return PixelRecord(
+            **{
+                name: np.concatenate([getattr(record, name) for record in records])
+                for name in names
+            }
+        )

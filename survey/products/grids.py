@@ -14,7 +14,7 @@ from terrain.map_frame import MapFrame
 
 FloatArray = NDArray[np.float64]
 SOLID_CLASSES = (PointClass.GROUND, PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT)
-MOST_OVERVIEW_CELLS = 1_000_000
+MOST_OVERVIEW_CELLS = 500_000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,7 +95,7 @@ def gridded(on_map: FloatArray, cells: CellGrid) -> ElevationGrid:
 
 
 class Overview:
-    """A grid of at most a million cells, for pictures and meshes, from the parts of a larger one.
+    """A grid of half a million cells at most, for pictures and meshes, from parts of a larger one.
 
     So many cells are taken together as are needed; of several the mean of the medians is taken.
     """

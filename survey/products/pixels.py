@@ -45,14 +45,14 @@ class PixelTally:
         self._depths = DepthBins(("found", "detectable"))
         self._errors = ErrorTally()
 
-    def add(self, record: PixelRecord) -> None:
-        """Add the wet pixels of a frame."""
+    def add(self, record: PixelRecord, *, frames: int = 1) -> None:
+        """Add the wet pixels of a frame, or of so many frames in one record."""
         wet = record.true_depth > 0.0
         outcome = record.outcome[wet]
         found = outcome == Outcome.FOUND
         detectable = record.detection_probability[wet] >= DETECTABLE
         error = record.monte_carlo_relative_error[wet]
-        self.frames += 1
+        self.frames += frames
         self.outcomes += np.bincount(outcome, minlength=len(Outcome))
         self.dry |= bool((record.outcome == Outcome.DRY).any())
         self._depths.add(record.true_depth[wet], found=found, detectable=detectable)

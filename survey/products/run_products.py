@@ -47,7 +47,7 @@ from terrain.seabed import Seabed
 
 FloatArray = NDArray[np.float64]
 ReadFrame = Callable[[int], FrameResult]
-POINTS_OF_A_TILE = 400_000
+POINTS_OF_A_TILE, FRAMES_AT_ONCE = 400_000, 8
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -215,9 +215,10 @@ def _first_look(
 ) -> FirstLook:
     look = FirstLook(map_frame)
     watch.writing(2 * len(frames))
-    for result in read_ahead(read, (frame.index for frame in frames)):
-        look.add(result)
-        watch.written(1)
+    results = read_ahead(read, (frame.index for frame in frames))
+    while some := list(islice(results, FRAMES_AT_ONCE)):
+        look.add(some)
+        watch.written(len(some))
     return look
 
 

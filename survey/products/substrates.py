@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from survey.cloud.points import Outcome, PointCloud
+from survey.cloud.points import Outcome, PixelRecord, PointCloud
 from survey.products.accuracy import BOTTOM_CLASSES
-from survey.products.frame_file import FrameResult
 from survey.products.pixels import share
 from terrain.substrate import UNLABELLED
 
@@ -24,10 +24,10 @@ class SubstrateTally:
         self._wet, self._found, self._points, self._known = np.zeros((4, CODES), np.int64)
         self._errors, self._squares = np.zeros((2, CODES))
 
-    def add_frame(self, result: FrameResult) -> None:
-        """Add a frame that has a bottom point for every pixel."""
-        wet = result.record.true_depth.ravel() > 0.0
-        seen, outcome = result.bottom.substrate[wet], result.record.outcome.ravel()[wet]
+    def add_pixels(self, record: PixelRecord, substrate: NDArray[np.uint8]) -> None:
+        """Add pixels, each with the code of what it truly looks at (pixels,)."""
+        wet = record.true_depth.ravel() > 0.0
+        seen, outcome = substrate[wet], record.outcome.ravel()[wet]
         self._wet += np.bincount(seen, minlength=CODES)
         self._found += np.bincount(seen[outcome == Outcome.FOUND], minlength=CODES)
 

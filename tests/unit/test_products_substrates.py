@@ -29,7 +29,7 @@ def results_of(survey: Any) -> list[FrameResult]:
 def judged(bottom: Any, results: list[FrameResult], names: dict[int, str]) -> dict[str, Any]:
     tally = SubstrateTally()
     for result in results:
-        tally.add_frame(result)
+        tally.add_pixels(result.record, result.bottom.substrate)
     for frame in range(2):
         tally.add_points(bottom.select(bottom.frame % 2 == frame))
     return tally.metrics(names)

@@ -40,8 +40,8 @@ def results(small_survey: Any) -> list[FrameResult]:
 @pytest.fixture(scope="module")
 def look(small_survey: Any, results: list[FrameResult]) -> FirstLook:
     look = FirstLook(small_survey.map_frame)
-    for result in results:
-        look.add(result)
+    for part in (results[:5], results[5:]):
+        look.add(part)
     return look
 
 
@@ -150,7 +150,7 @@ def test_a_large_grid_is_seen_in_fewer_cells(small_survey: Any) -> None:
     overview.add(grid)
     coarse = overview.map()
     assert coarse.cells.cell_size == 0.5 * 2
-    assert coarse.elevation.size <= 1_000_000 < grid.elevation.size
+    assert coarse.elevation.size <= 500_000 < grid.elevation.size
     row, column = np.argwhere(np.isfinite(grid.elevation))[0] // 2
     four = grid.elevation[2 * row : 2 * row + 2, 2 * column : 2 * column + 2]
     assert coarse.elevation[row, column] == pytest.approx(np.nanmean(four))
