@@ -10,7 +10,7 @@ from pathlib import Path
 
 from survey.cloud.frame_points import bottom_points, find_water, surface_points
 from survey.cloud.georeference import pixel_rays
-from survey.cloud.ranging import blind_at, first_echo, last_echo
+from survey.cloud.ranging import blind_at, first_echo
 from survey.cloud.record import pixel_record
 from survey.cloud.truth import true_targets
 from survey.errors import UserError
@@ -43,8 +43,12 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
         refractive_index=engine.water.refractive_index,
         wave_height=surface.wave_height,
     )
-    in_doubt = noise.of_flash(waveforms.variance[:2].sum(axis=0))
-    bottom = last_echo(counts=readings.counts, noise=in_doubt, surface_time=line.surface_time)
+    search = mission.search.over(
+        noise=noise,
+        variance=waveforms.variance[:2].sum(axis=0),
+        surface_time=line.surface_time,
+    )
+    bottom = search.echo(readings.counts)
 
     targets = true_targets(
         seabed=mission.seabed,
@@ -71,7 +75,8 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
         bottom=bottom,
         points=on_bottom,
         targets=targets,
-        noise=in_doubt,
+        noise=noise,
+        search=search,
         group_index=engine.water.group_index,
     )
     raw = mission.raw_of(readings)
