@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.echo import Echo
-from survey.cloud.noise import NoiseModel, Readout, gate_sums
+from survey.cloud.noise import NoiseModel, Readout
 
 FloatArray = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -29,7 +29,7 @@ def likeliest_echo(*, counts: Readout, peak: Whole, noise: NoiseModel) -> Echo:
     at = peak[found]
     result = np.full((4, *peak.shape), np.nan)
     if len(at) > 0:
-        result[:, row, column] = _measured(counts[row, column], at, row, column, noise)
+        result[:, row, column] = _measured(counts, at, row, column, noise)
     time, above, snr, error = result
     return Echo(time=time, counts=above, snr=snr, time_error=error)
 
@@ -38,20 +38,22 @@ def _measured(
     counts: Readout, at: Whole, row: Whole, column: Whole, noise: NoiseModel
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return time, counts, ratio to chance and standard error of time of n echoes."""
-    place = at[:, None]
-    expected, gate = noise.bottomless[row, column], noise.gate_bins
-    sums, mean = gate_sums(counts, gate), gate_sums(expected, gate)
-    everything = np.take_along_axis(sums, place, -1)
-    above = (everything - np.take_along_axis(mean, place, -1))[:, 0]
+    half = noise.gate_bins // 2
+    place = at[:, None] + np.arange(-half, half + 1)
+    inside = (place >= 0) & (place < counts.shape[-1])
+    index = (row[:, None], column[:, None], np.clip(place, 0, counts.shape[-1] - 1))
+    everything = (counts[index] * inside).sum(axis=-1, keepdims=True)
+    above = everything[:, 0] - (noise.bottomless[index] * inside).sum(axis=-1)
     scatter = replace(
         noise.gate,
         mean=np.maximum(everything, 1.0),
         gain_variance=noise.gate.gain_variance[row, column, at][:, None],
         added_variance=noise.gate.added_variance[row, column, at][:, None],
     )
-    lag, width = _likeliest_lag(counts, at, row, column, above, noise), noise.bin_width
+    signal = whole_signal(above, noise)
+    lag, width = _likeliest_lag(counts, at, row, column, signal, noise), noise.bin_width
     time = noise.bin_start + (at + lag + 0.5) * width
-    error = _least_error(at, row, column, np.maximum(above, 1.0), noise)
+    error = _least_error(at, row, column, signal, noise)
     return time, above, above / np.sqrt(scatter.variance[:, 0]), error * width
 
 
@@ -62,7 +64,7 @@ def _likeliest_lag(
     reach = 1 + int(np.ceil(SEARCH * noise.pulse_sigma / noise.bin_width))
     half = noise.pulse.shape[0] // 2
     local, noisy = _windows(counts, at, row, column, reach + half, noise)
-    share = np.maximum(signal, 1.0)[:, None] * noise.pulse
+    share = signal[:, None] * noise.pulse
     likely = np.stack(
         [
             (local[:, i : i + len(noise.pulse)] * np.log1p(share / noisy[:, i : i + len(noise.pulse)]))
@@ -86,7 +88,7 @@ def _windows(
     inside = (place >= 0) & (place < counts.shape[-1])
     kept = np.clip(place, 0, counts.shape[-1] - 1)
     noisy = _variance(noise, row, column, kept)
-    return np.take_along_axis(counts, kept, -1) * inside, np.maximum(noisy, LEAST)
+    return counts[row[:, None], column[:, None], kept] * inside, np.maximum(noisy, LEAST)
 
 
 def _least_error(
@@ -118,7 +120,7 @@ def timing_error(
 
     That time is where the sum of p' times the counts is zero: its error is the root of the sum of
     p'^2 (s p + b), over that of s p'^2. Arrays (rows, columns), ``at`` with one more axis of 1,
-    ``expected`` (rows, columns, bins) the noise.
+    ``signal`` counts in the gate, ``expected`` (rows, columns, bins) the noise.
     """
     half = noise.pulse.shape[0] // 2
     place = np.clip(at + np.arange(-half, half + 1), 0, expected.shape[-1] - 1)
@@ -126,10 +128,20 @@ def timing_error(
         np.take_along_axis(part, place, -1)
         for part in (noise.bins.gain_variance, noise.bins.added_variance)
     )
-    strength, slope = np.maximum(signal, 1.0)[..., None], _slope(noise.pulse)
+    strength, slope = whole_signal(signal, noise)[..., None], _slope(noise.pulse)
     mean = np.take_along_axis(expected, place, -1) + strength * noise.pulse
     spread = np.sqrt((slope**2 * ((1.0 + gain) * mean + added)).sum(axis=-1))
     return np.asarray(noise.bin_width * spread / (strength[..., 0] * (slope**2).sum()))
+
+
+def whole_signal(above: FloatArray, noise: NoiseModel) -> FloatArray:
+    """Return the counts of whole pulses, of which so many were above the noise in the gate.
+
+    No less than one count in the gate, for an error of time must have a bound.
+    """
+    middle, half = noise.pulse.shape[0] // 2, noise.gate_bins // 2
+    share = noise.pulse[max(0, middle - half) : middle + half + 1].sum()
+    return np.asarray(np.maximum(above, 1.0) / share)
 
 
 def _slope(pulse: FloatArray) -> FloatArray:

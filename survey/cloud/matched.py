@@ -40,6 +40,7 @@ from survey.cloud.tails import TailTable
 FloatArray = NDArray[np.float64]
 Singles = NDArray[np.float32]
 Whole = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
 
 FILTER_WIDTH = 1.2  # of the filter over that of the pulse
 FILTER_REACH = 2.5  # standard deviations of the filter
@@ -155,7 +156,7 @@ class MatchedSearch:
             expected=_filtered(noise.bottomless, taps),
             variance=_filtered(noise.bins.variance, taps**2, step),
             error=common * np.float32(1.0 + 1.0 / noise.model_flashes),
-            doubt=np.float32(DOUBTFUL) * own,
+            doubt=np.float32(DOUBTFUL) * _over_the_step(own),
             tail=_tail(tuple(taps.tolist()), false_alarm, gain_variance),
             deviate=MONTE_CARLO_TAIL * float(norm.isf(false_alarm)),
         )
@@ -167,11 +168,13 @@ class MatchedSearch:
         excess, clipped = np.empty_like(seen), np.empty_like(seen)
         scale, _ = self._fitted(seen)
         excesses(seen, self.expected, scale, alone.threshold, self.step, excess, clipped)
-        peak = self._last_peaks(excess, alone.threshold, excess, self.doubt)
+        everywhere = np.ones(self.late.shape, np.bool_)
+        peak = self._last_peaks(excess, alone.threshold, excess, self.doubt, everywhere)
         for pool in pools:
-            together = self._pooled(clipped, 1, pool.reach)
-            weak = self._last_peaks(together, pool.threshold, excess, self._own_least)
-            peak = np.where(peak == NONE, self._own_peak(excess, weak, alone.variance), peak)
+            unseen = peak == NONE
+            together = self._pooled(clipped, 1, pool.reach, unseen)
+            weak = self._last_peaks(together, pool.threshold, excess, self._own_least, unseen)
+            peak = np.where(unseen, self._own_peak(excess, weak, alone.variance), peak)
         return likeliest_echo(counts=counts, peak=peak, noise=self.noise)
 
     def probability(self, bottom: FloatArray) -> FloatArray:
@@ -251,19 +254,23 @@ class MatchedSearch:
             threshold=np.sqrt(chance**2 + self.deviate**2 * error).astype(np.float32),
         )
 
-    def _pooled(self, values: Singles, step: int, reach: int) -> Singles:
+    def _pooled(
+        self, values: Singles, step: int, reach: int, asked: BoolArray | None = None
+    ) -> Singles:
+        """Return the sums of the pixels around each, or around those asked for."""
         if reach == 0:
             return values
         result = np.empty_like(values)
-        pooled(values, self.late, step, reach, result)
+        everywhere = np.ones(self.late.shape, np.bool_)
+        pooled(values, self.late, everywhere if asked is None else asked, step, reach, result)
         return result
 
     def _last_peaks(
-        self, excess: Singles, threshold: Singles, own: Singles, least: Singles
+        self, excess: Singles, threshold: Singles, own: Singles, least: Singles, asked: BoolArray
     ) -> Whole:
         peak = np.empty(excess.shape[:2], np.int64)
         last_peaks(
-            excess, threshold, own, least, self.begin, self.step,
+            excess, threshold, own, least, self.begin, asked, self.step,
             TAIL_SHARE, int(TAIL_GATES * self.noise.gate_bins), peak,
         )  # fmt: skip
         return peak
@@ -321,6 +328,11 @@ def _tail(taps: tuple[float, ...], false_alarm: float, gain_variance: float) -> 
     return TailTable.build(
         weights=np.array(taps), false_alarm=false_alarm, gain_variance=gain_variance
     )
+
+
+def _over_the_step(values: Singles) -> Singles:
+    """Return the greater of the values at both ends of every step."""
+    return np.maximum(values, np.concatenate([values[..., 1:], values[..., -1:]], axis=-1))
 
 
 def _filtered(values: Readout, taps: Singles, step: int = 1) -> Singles:

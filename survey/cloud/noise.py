@@ -163,6 +163,20 @@ class NoiseModel:
             model_flashes=model_flashes,
         )
 
+    def at_rate(self, false_alarm_rate: float) -> NoiseModel:
+        """Return the model with thresholds over the bottom for another false-alarm rate."""
+        per_gate = false_alarm_rate / self.bottomless.shape[-1]
+        deviate = float(norm.isf(per_gate))
+        allowance = self.allowance * (deviate / self.deviate)
+        raised = replace(self.gate, mean=self.gate.mean + allowance)
+        return replace(
+            self,
+            false_alarm_rate=false_alarm_rate,
+            bottom_threshold=raised.threshold(per_gate),
+            allowance=allowance,
+            deviate=deviate,
+        )
+
     def of_flash(self, variance: FloatArray) -> NoiseModel:
         """Return the model with the doubt of a flash whose light without a bottom errs so.
 

@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import norm
 
+from survey.cloud.kernels.matched_filter import interpolated
+
 FloatArray = NDArray[np.float64]
 
 STEPS = 32  # of the grid on which a sum is told, in the largest weight
@@ -65,11 +67,13 @@ class TailTable:
         deviations = np.concatenate([above / np.sqrt(variance[few]), many])
         return cls(log_variance=np.log(variance), deviations=deviations)
 
-    def above(self, variance: NDArray[np.floating]) -> FloatArray:
+    def above(self, variance: NDArray[np.floating]) -> NDArray[np.float32]:
         """Return by how much a sum of such variance must exceed its mean."""
-        wide = np.maximum(variance, FAINTEST)
-        deviations = np.interp(np.log(wide), self.log_variance, self.deviations)
-        return np.asarray(deviations * np.sqrt(wide))
+        given = np.ascontiguousarray(variance, dtype=np.float32)
+        result = np.empty_like(given)
+        first, second = self.log_variance[:2]
+        interpolated(given.reshape(-1), first, second - first, self.deviations, result.reshape(-1))
+        return result
 
 
 def _rate(variance: float, weights: FloatArray, gain_variance: float) -> float:

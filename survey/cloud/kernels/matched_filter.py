@@ -9,6 +9,7 @@ from terrain.kernels import kernel, leaf_kernel
 
 Singles = NDArray[np.float32]
 Whole = NDArray[np.int64]
+Truths = NDArray[np.bool_]
 
 NONE = -1
 ONE = np.float32(1.0)
@@ -34,8 +35,10 @@ def filtered(values: Singles, taps: Singles, result: Singles) -> None:
 
 
 @kernel
-def pooled(values: Singles, late: Whole, step: int, reach: int, result: Singles) -> None:
-    """Add up the pixels around each, at equal time after the surface.
+def pooled(
+    values: Singles, late: Whole, asked: Truths, step: int, reach: int, result: Singles
+) -> None:
+    """Add up the pixels around each that is ``asked`` for, at equal time after the surface.
 
     ``late`` (rows, columns) is the surface's bin, `NONE` where a pixel is left out; ``values`` are
     those of every ``step``-th bin. What lies beyond the ends of the gate is missing from the sum.
@@ -45,7 +48,7 @@ def pooled(values: Singles, late: Whole, step: int, reach: int, result: Singles)
         for column in range(columns):
             total = result[row, column]
             total[:] = 0.0
-            if late[row, column] == NONE:
+            if late[row, column] == NONE or not asked[row, column]:
                 continue
             for r in range(max(0, row - reach), min(rows, row + reach + 1)):
                 for c in range(max(0, column - reach), min(columns, column + reach + 1)):
@@ -107,8 +110,8 @@ def excesses(
 
 @kernel
 def last_peaks(
-    excess: Singles, threshold: Singles, own: Singles, least: Singles, begin: Whole, step: int,
-    tail_share: float, tail_bins: int, peak: Whole,
+    excess: Singles, threshold: Singles, own: Singles, least: Singles, begin: Whole,
+    asked: Truths, step: int, tail_share: float, tail_bins: int, peak: Whole,
 ) -> None:  # fmt: skip
     """Write the bin of the last peak (rows, columns) over the thresholds; `NONE` without one.
 
@@ -122,11 +125,13 @@ def last_peaks(
         for column in range(columns):
             start = begin[row, column]
             best, height = NONE, np.float32(0.0)
-            if start == NONE:
+            if start == NONE or not asked[row, column]:
                 peak[row, column] = NONE
                 continue
+            place = (bins - 1) // step
             for bin_ in range(bins - 1, start - 1, -1):
-                place = bin_ // step
+                if bin_ < place * step:
+                    place -= 1
                 above, wanted = excess[row, column, bin_], threshold[row, column, place]
                 if best != NONE and above < 0.5 * wanted:
                     break
@@ -138,3 +143,18 @@ def last_peaks(
                     if height < tail_share * excess[row, column, bin_]:
                         best, height = bin_, excess[row, column, bin_]
             peak[row, column] = best if best > start else NONE
+
+
+@kernel
+def interpolated(
+    variance: Singles, first: float, width: float, deviations: NDArray[np.float64], result: Singles
+) -> None:
+    """Write the threshold of every variance (n,), straight between a table's even logarithms."""
+    last = deviations.shape[0] - 2
+    for i in range(variance.shape[0]):
+        wide = max(float(variance[i]), np.exp(first))
+        place = (np.log(wide) - first) / width
+        low = min(int(place), last)
+        part = place - low
+        times = (1.0 - part) * deviations[low] + part * deviations[low + 1]
+        result[i] = times * np.sqrt(wide)
