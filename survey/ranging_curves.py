@@ -12,8 +12,8 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from itertools import product
+from dataclasses import dataclass
+from itertools import pairwise, product
 from pathlib import Path
 from typing import Any
 
@@ -124,7 +124,7 @@ def by_bins(
 ) -> list[dict[str, float]]:
     """Return shares of marked pixels in bins of a value; bins of under 100 pixels are left out."""
     rows = []
-    for low, high in zip(edges, edges[1:], strict=False):
+    for low, high in pairwise(edges):
         inside = (value >= low) & (value < high)
         if inside.sum() >= FEWEST:
             row = {"from": float(low), "to": float(high), "pixels": int(inside.sum())}
@@ -133,9 +133,7 @@ def by_bins(
     return rows
 
 
-def curves(
-    water: str, *, day: bool, frames: int, draws: int, **more: Any
-) -> dict[str, Any]:
+def curves(water: str, *, day: bool, frames: int, draws: int, **more: Any) -> dict[str, Any]:
     """Return the shares found by depth and by signal to noise, and both counts of false alarms.
 
     ``more`` are other keys of the scenario.
@@ -158,7 +156,9 @@ def curves(
         parts["snr"].append(_ratio(flash, bed.noise).ravel())
         for name, noise in (("threshold", bed.noise.at_rate(rate)), ("matched", bed.noise)):
             echo = look(name, noise, flash, counts)
-            off = np.abs(echo.time - flash.time) * 0.5 * speed_of_light / bed.engine.water.group_index
+            off = (
+                np.abs(echo.time - flash.time) * 0.5 * speed_of_light / bed.engine.water.group_index
+            )
             right = off <= NEAR
             parts[name].append((echo.found & right).ravel())
             parts[f"{name}_false"].append((echo.found & ~right).ravel())

@@ -18,7 +18,7 @@ LEAST = 1e-9
 
 
 def likeliest_echo(*, counts: Readout, peak: Whole, noise: NoiseModel) -> Echo:
-    """Return the echoes around peaks (rows, columns), -1 where there is none, at maximum likelihood.
+    """Return the likeliest echoes around peaks (rows, columns), -1 where there is none.
 
     The likelihood of Poisson counts c over a known noise b, of an echo of s counts and the pulse's
     shape p: sum of c log(1 + s p / b), less s. Noise that is added to readings counts as so much
@@ -65,14 +65,10 @@ def _likeliest_lag(
     half = noise.pulse.shape[0] // 2
     local, noisy = _windows(counts, at, row, column, reach + half, noise)
     share = signal[:, None] * noise.pulse
-    likely = np.stack(
-        [
-            (local[:, i : i + len(noise.pulse)] * np.log1p(share / noisy[:, i : i + len(noise.pulse)]))
-            .sum(axis=-1)
-            for i in range(2 * reach + 1)
-        ],
-        axis=-1,
-    )  # fmt: skip
+    likely = np.empty((len(at), 2 * reach + 1))
+    for i in range(2 * reach + 1):
+        part = slice(i, i + len(noise.pulse))
+        likely[:, i] = (local[:, part] * np.log1p(share / noisy[:, part])).sum(axis=-1)
     top = np.clip(likely.argmax(axis=-1), 1, 2 * reach - 1)[:, None]
     left, centre, right = (np.take_along_axis(likely, top + k, -1)[:, 0] for k in (-1, 0, 1))
     curvature = left - 2.0 * centre + right

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from survey.cloud.echo import Echo
 from survey.cloud.georeference import WaterPath, bend_at_surface, place_in_air, place_in_water
 from survey.cloud.points import PointClass, PointCloud
-from survey.cloud.echo import Echo
 from survey.cloud.truth import TrueTargets
 from survey.flight.pose import Frame
 from terrain.substrate import UNLABELLED

@@ -24,6 +24,7 @@ from scipy.ndimage import uniform_filter
 from scipy.special import ndtr
 from scipy.stats import norm
 
+from survey.cloud.echo import Echo
 from survey.cloud.echo_time import likeliest_echo
 from survey.cloud.kernels.matched_filter import (
     NONE,
@@ -33,7 +34,6 @@ from survey.cloud.kernels.matched_filter import (
     pooled,
     scales,
 )
-from survey.cloud.echo import Echo
 from survey.cloud.noise import DOUBTFUL, NEIGHBOURS, NoiseModel, Readout, reading_error
 from survey.cloud.tails import TailTable
 
@@ -132,12 +132,12 @@ class MatchedSearch:
         taps = filter_taps(noise.pulse_sigma / noise.bin_width)
         step = max(1, noise.gate_bins // 3)
         wet = np.isfinite(surface_time)
-        late = np.where(wet, surface_time - noise.bin_start, 0.0) / noise.bin_width
-        late = np.where(wet, late.astype(np.int64), NONE)
-        own = reading_error(
+        bins = np.where(wet, surface_time - noise.bin_start, 0.0) / noise.bin_width
+        late = np.where(wet, bins.astype(np.int64), NONE)
+        off = reading_error(
             noise.detector, noise.bottomless_light, np.sqrt(variance), noise.bottomless
         )
-        own = _filtered(own, taps, step)
+        own = _filtered(off, taps, step)
         mean = uniform_filter(own, size=(NEIGHBOURS, NEIGHBOURS, 1))
         rare = np.minimum(own, np.float32(RARE) * mean)
         common = uniform_filter(rare**2, size=(NEIGHBOURS, NEIGHBOURS, 1))
@@ -216,11 +216,7 @@ class MatchedSearch:
     def _judgements(self) -> list[Judgement]:
         """The pixel's own judgement, and those of its pools."""
         _, scale_error = self._fitted(self.expected)
-        parts = (self._expected_by_step, self.variance, self.error)
-        return [
-            self._judged(reach, *(self._pooled(part, self.step, reach) for part in parts), scale_error)
-            for reach in (0, *POOLS)
-        ]
+        return [self._judged(reach, scale_error) for reach in (0, *POOLS)]
 
     @cached_property
     def _own_least(self) -> Singles:
@@ -242,10 +238,12 @@ class MatchedSearch:
         )  # fmt: skip
         return scale, error
 
-    def _judged(
-        self, reach: int, expected: Singles, variance: Singles, error: Singles, scale_error: Singles
-    ) -> Judgement:
+    def _judged(self, reach: int, scale_error: Singles) -> Judgement:
         """Return what chance asks, and the errors of what is expected."""
+        expected, variance, error = (
+            self._pooled(part, self.step, reach)
+            for part in (self._expected_by_step, self.variance, self.error)
+        )
         error = error + expected**2 * (scale_error + np.float32(SHAPE_DOUBT**2))
         chance = self.tail.above(variance)
         return Judgement(
@@ -297,8 +295,8 @@ def filter_taps(sigma: float) -> Singles:
 
     Examples
     --------
-    >>> filter_taps(1.0).round(2).tolist()
-    [0.04..., 0.25, 0.71..., 1.0, 0.71..., 0.25, 0.04...]
+    >>> print(filter_taps(1.0).round(2))
+    [0.04 0.25 0.71 1.   0.71 0.25 0.04]
     """
     width = max(FILTER_WIDTH * sigma, 0.3)
     half = int(np.ceil(FILTER_REACH * width))
@@ -316,7 +314,7 @@ def false_alarm_of_a_bin(*, rate: float, bins: int, sigma: float) -> float:
     Examples
     --------
     >>> f"{false_alarm_of_a_bin(rate=1e-3, bins=300, sigma=5.0):.2e}"
-    '1.39e-05'
+    '1.31e-05'
     """
     alone = rate / bins
     together = float(norm.isf(alone)) / (2.0 * sqrt(pi) * max(sigma, 1e-9))
@@ -332,7 +330,8 @@ def _tail(taps: tuple[float, ...], false_alarm: float, gain_variance: float) -> 
 
 def _over_the_step(values: Singles) -> Singles:
     """Return the greater of the values at both ends of every step."""
-    return np.maximum(values, np.concatenate([values[..., 1:], values[..., -1:]], axis=-1))
+    later = np.concatenate([values[..., 1:], values[..., -1:]], axis=-1)
+    return np.asarray(np.maximum(values, later))
 
 
 def _filtered(values: Readout, taps: Singles, step: int = 1) -> Singles:
@@ -340,4 +339,5 @@ def _filtered(values: Readout, taps: Singles, step: int = 1) -> Singles:
     flat = values.reshape(-1, values.shape[-1]).astype(np.float32)
     result = np.empty_like(flat)
     filtered(flat, taps, result)
-    return np.ascontiguousarray(result[:, ::step]).reshape(*values.shape[:2], -1)
+    by_step = np.ascontiguousarray(result[:, ::step])
+    return np.asarray(by_step.reshape(*values.shape[:2], -1))

@@ -177,7 +177,7 @@ class NoiseModel:
             deviate=deviate,
         )
 
-    def of_flash(self, variance: FloatArray) -> NoiseModel:
+    def of_flash(self, variance: NDArray[np.floating]) -> NoiseModel:
         """Return the model with the doubt of a flash whose light without a bottom errs so.
 
         Over a shallow bed the same walks tell the column less well than over the deep water of
@@ -206,7 +206,7 @@ class NoiseModel:
         return gate_sums(uncertain, self.gate_bins)
 
 
-def _common_error(variance: FloatArray, model_flashes: int) -> FloatArray:
+def _common_error(variance: NDArray[np.floating], model_flashes: int) -> FloatArray:
     """Return the error of flash and model together, averaged over 9 x 9 pixels."""
     smooth = uniform_filter(
         np.asarray(variance, dtype=np.float64), size=(NEIGHBOURS, NEIGHBOURS, 1)

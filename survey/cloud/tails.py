@@ -56,8 +56,8 @@ class TailTable:
         Examples
         --------
         >>> one_bin = TailTable.build(weights=np.ones(1), false_alarm=1e-3, gain_variance=0.0)
-        >>> 1.0 + one_bin.above(np.array([1.0])).round(2)  # Poisson counts of mean 1 reach 6 so
-        array([6.])
+        >>> print(1.0 + one_bin.above(np.array([1.0])).round(2))  # more than 5 counts of mean 1
+        [5.03]
         """
         decades = np.log10(ENDLESS / FAINTEST)
         variance = np.geomspace(FAINTEST, ENDLESS, int(decades * POINTS_PER_DECADE) + 1)

@@ -1,4 +1,4 @@
-"""The matched filter: false alarms as rare as stated, more echoes than the threshold, their times."""
+"""The matched filter: false alarms as rare as stated, more echoes, and when they came."""
 
 from __future__ import annotations
 
@@ -182,9 +182,7 @@ def test_land_and_nothing_at_all_have_no_bottom() -> None:
     light, time = water(20.0, 0.1), surface_time()
     time[:, :5] = np.nan
     noise = noise_over(light, 0.1)
-    counts = np.random.default_rng(9).poisson(
-        light + pulse(np.full((ROWS, COLUMNS), 150.5), 300.0)
-    )
+    counts = np.random.default_rng(9).poisson(light + pulse(np.full((ROWS, COLUMNS), 150.5), 300.0))
     found = search_over(noise, time=time).echo(counts).found
     assert not found[:, :5].any()
     assert found[:, 5:].all()

@@ -135,9 +135,9 @@ def last_peaks(
                 above, wanted = excess[row, column, bin_], threshold[row, column, place]
                 if best != NONE and above < 0.5 * wanted:
                     break
-                if above >= wanted and own[row, column, bin_] >= least[row, column, place]:
-                    if above > height:
-                        best, height = bin_, above
+                strong = above >= wanted and above > height
+                if strong and own[row, column, bin_] >= least[row, column, place]:
+                    best, height = bin_, above
             if best != NONE:
                 for bin_ in range(best - 1, max(start, best - tail_bins) - 1, -1):
                     if height < tail_share * excess[row, column, bin_]:
