@@ -40,9 +40,9 @@ BOTTOMLESS_DEPTH = 400.0
 FALSE_ALARM_RATE = 1e-3
 RAISED = (1e-3, 5e-3, 1e-2, 2e-2, 4e-2, 8e-2, 0.16, 0.3)  # stated rates tried for the plain method
 NEAR = 1.0  # [m], a bottom further off is false: `survey.cloud.truth`
-DEPTH_STEP, SNR_STEP, MOST_SNR = 1.0, 0.5, 12.0
+DEPTH_STEP, SNR_STEP, MOST_SNR = 0.5, 0.5, 12.0
 FEWEST = 100
-DIGITS = 6
+DIGITS = 4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -225,7 +225,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         curves(water, day=day, frames=given.frames, draws=given.draws)
         for water, day in product(BEDS, (True, False))
     ]
-    (given.output / "ranging.json").write_text(json.dumps(cases, indent=1) + "\n")
+    (given.output / "ranging.json").write_text(json.dumps(cases) + "\n")
     draw(cases, given.output / "ranging.png")
 
 

@@ -118,7 +118,7 @@ def last_peaks(
     A bin fires where ``excess`` reaches ``threshold`` and ``own`` reaches ``least``; a run of bins
     that fire ends where ``excess`` falls under half its threshold. The highest bin of the last run
     is the peak, unless it is weaker than ``tail_share`` of one up to ``tail_bins`` before it: then
-    that one is. A peak on the first bin searched is none.
+    that one is. A peak on the first bin searched, or on a flank of something before it, is none.
     """
     rows, columns, bins = excess.shape
     for row in range(rows):
@@ -142,7 +142,8 @@ def last_peaks(
                 for bin_ in range(best - 1, max(start, best - tail_bins) - 1, -1):
                     if height < tail_share * excess[row, column, bin_]:
                         best, height = bin_, excess[row, column, bin_]
-            peak[row, column] = best if best > start else NONE
+            crest = best > start and excess[row, column, best] >= excess[row, column, best - 1]
+            peak[row, column] = best if crest else NONE
 
 
 @kernel
