@@ -11,7 +11,7 @@ from typing import Any
 
 from survey.cloud.frame_points import bottom_points, find_water, surface_points
 from survey.cloud.georeference import pixel_rays
-from survey.cloud.ranging import blind_at, first_echo, last_echo
+from survey.cloud.ranging import blind_at, first_echo
 from survey.cloud.record import pixel_record
 from survey.cloud.truth import true_targets
 from survey.errors import UserError
@@ -53,8 +53,12 @@ def observe(mission: Mission, frame: Frame) -> Observation:
         refractive_index=engine.water.refractive_index,
         wave_height=surface.wave_height,
     )
-    in_doubt = noise.of_flash(waveforms.variance[:2].sum(axis=0))
-    bottom = last_echo(counts=readings.counts, noise=in_doubt, surface_time=line.surface_time)
+    search = mission.search.over(
+        noise=noise,
+        variance=waveforms.variance[:2].sum(axis=0),
+        surface_time=line.surface_time,
+    )
+    bottom = search.echo(readings.counts)
 
     targets = true_targets(
         seabed=mission.seabed,
@@ -84,7 +88,8 @@ def observe(mission: Mission, frame: Frame) -> Observation:
         bottom=bottom,
         points=on_bottom,
         targets=targets,
-        noise=in_doubt,
+        noise=noise,
+        search=search,
         group_index=engine.water.group_index,
     )
     raw = mission.raw_of(readings)

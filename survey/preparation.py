@@ -10,6 +10,7 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
+from survey.cloud.bottom_search import SEARCHES, BottomSearch
 from survey.cloud.noise import NoiseModel
 from survey.cloud.posed_noise import PosedNoise
 from survey.cloud.ranging import surface_walk
@@ -53,6 +54,7 @@ class Mission:
     sea: SeaSurface
     engine: Engine
     level_error: float
+    search: type[BottomSearch]
     posed_noise: PosedNoise
     budget: Budget
     products: ProductSettings
@@ -105,6 +107,7 @@ def prepare(scenario: Scenario) -> Mission:
         sea=surface,
         engine=_engine(scenario, seabed, water, surface),
         level_error=scenario.processing.water_level_error_m,
+        search=SEARCHES[scenario.processing.ranging],
         posed_noise=posed_noise(scenario, frames[0], surface),
         budget=Budget(
             pulse_sigma=_seen_pulse(scenario),

@@ -17,7 +17,13 @@ import numba
 
 PLAIN: dict[str, Any] = {"error_model": "numpy", "fastmath": False}
 """Stated for every kernel: what a kernel does not state it takes over from its first caller."""
-KERNEL_ROOMS = ("terrain", "survey/optics", "survey/sensor", "survey/transport")
+KERNEL_ROOMS = (
+    "terrain",
+    "survey/optics",
+    "survey/sensor",
+    "survey/transport",
+    "survey/cloud/kernels",
+)
 
 F = TypeVar("F", bound=Callable[..., Any])
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from survey.cloud.echo import Echo
 from survey.cloud.georeference import WaterPath, bend_at_surface, place_in_air, place_in_water
 from survey.cloud.points import PointClass, PointCloud
-from survey.cloud.ranging import Echo
 from survey.cloud.truth import TrueTargets
 from survey.flight.pose import Frame
 from terrain.substrate import UNLABELLED
@@ -175,6 +175,7 @@ def bottom_points(
             time=np.where(line.land, first.time, bottom.time),
             counts=np.where(line.land, first.counts, bottom.counts),
             snr=np.where(line.land, first.snr, bottom.snr),
+            time_error=np.where(line.land, first.time_error, bottom.time_error),
         ),
     )
 

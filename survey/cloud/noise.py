@@ -56,6 +56,8 @@ class NoiseModel:
         steady light included.
     steady, bottomless : array
         Mean readings under these lights.
+    bins : Scatter
+        Readings of the bins, over water without a bottom.
     gate : Scatter
         Readings of the gate that is centred on the bin, over water without a bottom.
     surface_threshold, bottom_threshold : array
@@ -73,6 +75,8 @@ class NoiseModel:
         Bins of a gate, odd.
     pulse : array (taps,)
         The pulse in bins, for the matched filter.
+    false_alarm_rate : float
+        See `RangingSettings` [1].
     bin_start, bin_width : float
         Early edge of the first bin, and width [s].
     surface_walk : array (rows, columns) or float
@@ -85,11 +89,13 @@ class NoiseModel:
     bottomless_light: FloatArray
     steady: FloatArray
     bottomless: FloatArray
+    bins: Scatter
     gate: Scatter
     surface_threshold: FloatArray
     bottom_threshold: FloatArray
     gate_bins: int
     pulse: FloatArray
+    false_alarm_rate: float
     bin_start: float
     bin_width: float
     allowance: FloatArray
@@ -97,6 +103,12 @@ class NoiseModel:
     model_flashes: int
     doubt: FloatArray | float = 0.0
     surface_walk: FloatArray | float = 0.0
+
+    @property
+    def pulse_sigma(self) -> float:
+        """Standard deviation of the pulse, the detector's jitter included [s]."""
+        bins = np.arange(self.pulse.shape[0]) - self.pulse.shape[0] // 2
+        return float(np.sqrt((self.pulse * bins**2).sum()) * self.bin_width)
 
     @classmethod
     def build(
@@ -126,7 +138,7 @@ class NoiseModel:
         steady = detector.scatter(even_light, detector.mean(even_light))
         bottomless = detector.scatter(bottomless_light, detector.mean(bottomless_light))
         error = _common_error(flash_variance, model_flashes)
-        uncertain = _reading_error(detector, bottomless_light, error, bottomless.mean)
+        uncertain = reading_error(detector, bottomless_light, error, bottomless.mean)
         deviate = float(norm.isf(per_gate))
         allowance = deviate * gate_sums(uncertain, gate_bins)
         gate = gate_scatter(bottomless, gate_sums(bottomless.mean, gate_bins), gate_bins)
@@ -137,11 +149,13 @@ class NoiseModel:
             bottomless_light=bottomless_light,
             steady=steady.mean,
             bottomless=bottomless.mean,
+            bins=bottomless,
             gate=gate,
             surface_threshold=gate_scatter(steady, strongest, gate_bins).threshold(per_gate),
             bottom_threshold=replace(gate, mean=gate.mean + allowance).threshold(per_gate),
             gate_bins=gate_bins,
             pulse=pulse,
+            false_alarm_rate=settings.false_alarm_rate,
             bin_start=bin_start,
             bin_width=bin_width,
             allowance=allowance,
@@ -149,7 +163,21 @@ class NoiseModel:
             model_flashes=model_flashes,
         )
 
-    def of_flash(self, variance: FloatArray) -> NoiseModel:
+    def at_rate(self, false_alarm_rate: float) -> NoiseModel:
+        """Return the model with thresholds over the bottom for another false-alarm rate."""
+        per_gate = false_alarm_rate / self.bottomless.shape[-1]
+        deviate = float(norm.isf(per_gate))
+        allowance = self.allowance * (deviate / self.deviate)
+        raised = replace(self.gate, mean=self.gate.mean + allowance)
+        return replace(
+            self,
+            false_alarm_rate=false_alarm_rate,
+            bottom_threshold=raised.threshold(per_gate),
+            allowance=allowance,
+            deviate=deviate,
+        )
+
+    def of_flash(self, variance: NDArray[np.floating]) -> NoiseModel:
         """Return the model with the doubt of a flash whose light without a bottom errs so.
 
         Over a shallow bed the same walks tell the column less well than over the deep water of
@@ -174,11 +202,11 @@ class NoiseModel:
 
     def _gate_error(self, error: FloatArray) -> FloatArray:
         """Return by how much a gate's reading may be off when its light errs so in every bin."""
-        uncertain = _reading_error(self.detector, self.bottomless_light, error, self.bottomless)
+        uncertain = reading_error(self.detector, self.bottomless_light, error, self.bottomless)
         return gate_sums(uncertain, self.gate_bins)
 
 
-def _common_error(variance: FloatArray, model_flashes: int) -> FloatArray:
+def _common_error(variance: NDArray[np.floating], model_flashes: int) -> FloatArray:
     """Return the error of flash and model together, averaged over 9 x 9 pixels."""
     smooth = uniform_filter(
         np.asarray(variance, dtype=np.float64), size=(NEIGHBOURS, NEIGHBOURS, 1)
@@ -200,7 +228,7 @@ def gate_sums(counts: Readout, gate_bins: int) -> FloatArray:
     return np.asarray(running[..., gate_bins:] - running[..., :-gate_bins])
 
 
-def _reading_error(
+def reading_error(
     detector: Detector, light: FloatArray, error: FloatArray, mean: FloatArray
 ) -> FloatArray:
     """Return by how much the mean readings may be off when all light is off by its error.

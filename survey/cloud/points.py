@@ -128,7 +128,8 @@ class PixelRecord:
     true_depth : array
         Depth of that place below the water level, negative on land [m].
     detection_probability : array
-        Probability, eq. (11) of [Lisenko2017], that the bottom echo fires its threshold.
+        Probability that the scenario's ranging finds the bottom echo: by eq. (11) of [Lisenko2017]
+        with the threshold; with the matched filter alone or with its neighbours, as normal sums.
     outcome : array
         `Outcome` of the pixel.
     bottom_counts : array

@@ -58,11 +58,11 @@ class PosedNoise:
 
     def at(self, pose: Pose) -> NoiseModel:
         """Return the noise model at a pose; the level one where no echo moves by 1/50 of a bin."""
-        late = self._surface_time(pose) - self._surface_time(self.pose)
+        late = self.surface_time(pose) - self.surface_time(self.pose)
         if np.abs(late).max() < UNMOVED_BINS * self.level.bin_width:
             return self.level
         row, column = self._alike(pose)
-        delay = (self._surface_time(pose) - self._surface_time(self.pose)[row, column], late)
+        delay = (self.surface_time(pose) - self.surface_time(self.pose)[row, column], late)
         width = self.level.bin_width
         nearer = (self._height(self.pose) / self._height(pose)) ** 2
         light = nearer * (
@@ -77,7 +77,7 @@ class PosedNoise:
     def _height(self, pose: Pose) -> float:
         return float(pose.position[2] - self.water_level)
 
-    def _surface_time(self, pose: Pose) -> FloatArray:
+    def surface_time(self, pose: Pose) -> FloatArray:
         """Return the two-way times to the level water (rows, columns) [s]."""
         rays = pixel_rays(camera=self.camera, pose=pose)
         return np.asarray(2.0 * self._height(pose) / -rays[..., 2] / speed_of_light)

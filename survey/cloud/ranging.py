@@ -5,12 +5,14 @@ Thresholds are those of `survey.cloud.noise`, for readings summed over a gate of
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 
+from survey.cloud.echo import Echo
+from survey.cloud.echo_time import timing_error
 from survey.cloud.noise import NoiseModel, Readout, gate_scatter, gate_sums
 
 FloatArray = NDArray[np.float64]
@@ -18,31 +20,6 @@ BoolArray = NDArray[np.bool_]
 
 SURFACE_SEARCH_GATES = 1.5
 GUARD_GATES = 1.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class Echo:
-    """One echo in each pixel; arrays (rows, columns), nan where there is none.
-
-    Parameters
-    ----------
-    time : array
-        Two-way time [s].
-    counts : array
-        Counts above the expected noise [1].
-    snr : array
-        Those counts over the standard deviation of all counts in the gate, the detector's own
-        noise included [1].
-    """
-
-    time: FloatArray
-    counts: FloatArray
-    snr: FloatArray
-
-    @property
-    def found(self) -> BoolArray:
-        """Tell which pixels have the echo."""
-        return np.isfinite(self.time)
 
 
 def first_echo(*, counts: Readout, noise: NoiseModel) -> Echo:
@@ -157,10 +134,12 @@ def _measured(
     everything = np.take_along_axis(gate_sums(counts, noise.gate_bins), at, -1)[..., 0]
     spread = replace(noise.gate.at(at), mean=np.maximum(everything, 1.0)[..., None]).variance
     snr = above / np.sqrt(spread[..., 0])
+    error = timing_error(signal=above, at=at, expected=expected, noise=noise)
     return Echo(
         time=np.where(found, time, np.nan),
         counts=np.where(found, above, np.nan),
         snr=np.where(found, snr, np.nan),
+        time_error=np.where(found, error, np.nan),
     )
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from survey.cloud.bottom_search import BottomSearch
+from survey.cloud.echo import Echo
 from survey.cloud.georeference import depth_of
 from survey.cloud.noise import NoiseModel, gate_sums
 from survey.cloud.points import PixelRecord, PointCloud
-from survey.cloud.ranging import GUARD_GATES, Echo, bottom_detection_probability
+from survey.cloud.ranging import GUARD_GATES
 from survey.cloud.truth import TrueTargets, outcomes
 from survey.transport.waveforms import Waveforms
 
@@ -23,6 +25,7 @@ def pixel_record(
     points: PointCloud,
     targets: TrueTargets,
     noise: NoiseModel,
+    search: BottomSearch,
     group_index: float,
 ) -> PixelRecord:
     """Return what each pixel could have seen, and what became of it.
@@ -40,12 +43,14 @@ def pixel_record(
     targets : TrueTargets
         Where the pixels truly look.
     noise : NoiseModel
-        Gates and thresholds.
+        Its gates.
+    search : BottomSearch
+        How the bottom was looked for.
     group_index : float
         Of the water [1].
     """
     expected = waveforms.origin("bottom")
-    probability = bottom_detection_probability(bottom=expected, noise=noise)
+    probability = search.probability(expected)
     counts, spread = _best_gate(
         expected, np.sqrt(waveforms.variance[2], dtype=np.float64), noise.gate_bins
     )

@@ -135,12 +135,16 @@ class Transport(Section):
 class Processing(Section):
     """From counts to points and grids; without `echo_gate_ns` an echo is one pulse width long.
 
+    `ranging` is how the bottom is looked for: by a matched filter, weak echoes together with their
+    neighbours, or by the threshold of [Lisenko2017] in each pixel alone.
+
     `water_level_error_m` is how far the level that is expected, before the first echoes tell it,
     lies above the true one. Thresholds are made for the water with its layers, unless
     `expects_layers` is false: then for that of [water] alone. `keep_waveforms` keeps the detector's
     histograms and time tags in the frames' files: of one pixel in 8 x 8, or of all.
     """
 
+    ranging: Literal["matched", "threshold"] = "matched"
     false_alarm_rate: Annotated[float, Field(gt=0.0, lt=1.0)] = 1e-3
     echo_gate_ns: Positive | None = None
     expects_layers: bool = True

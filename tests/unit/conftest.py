@@ -184,6 +184,7 @@ class Look:
             time=np.where(there, time, np.nan),
             counts=np.where(there, 500.0, np.nan),
             snr=np.where(there, 20.0, np.nan),
+            time_error=np.where(there, 1e-10, np.nan),
         )
 
     @property
