@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 import typer
 from typer.core import TyperGroup
 
+from survey import export_console
 from survey.exit_status import BAD_INPUT, FILE_MISSING, OUR_FAULT, TRACEBACK_VARIABLE, explain
 
 Settings = Annotated[
@@ -202,6 +203,9 @@ def view(
         draw(folder, screenshot)
     except (ValueError, RuntimeError) as fault:
         raise UserError(str(fault)) from fault
+
+
+app.command()(export_console.export)
 
 
 @app.command()

@@ -56,7 +56,7 @@ class RunFolder:
         write_json(path / MANIFEST, manifest)
         write_whole(path / "scenario.toml", resolved.encode())
         (path / "frames").mkdir(exist_ok=True)
-        return cls(path=path, whole=dict(_whole_frames(path)))
+        return cls(path=path, whole=dict(whole_frames(path)))
 
     def frame_path(self, index: int) -> Path:
         """Return the place of a frame's file."""
@@ -131,7 +131,7 @@ def _require_same(path: Path, found: dict[str, Any], wanted: dict[str, Any]) -> 
         )
 
 
-def _whole_frames(path: Path) -> Iterator[tuple[int, str]]:
+def whole_frames(path: Path) -> Iterator[tuple[int, str]]:
     """Yield the frames whose file still is what the journal says."""
     journal = path / "journal.jsonl"
     if not journal.exists():

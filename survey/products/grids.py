@@ -1,9 +1,10 @@
-"""Gridded bathymetry: GeoTIFF."""
+"""Gridded bathymetry: GeoTIFF, plain or cloud-optimised."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,15 +106,37 @@ def write_bathymetry_tif(path: Path, grid: ElevationGrid, map_frame: MapFrame) -
     ReadBackError
         If the file does not read back as written.
     """
+    tiles = {"driver": "GTiff", "tiled": True, "blockxsize": TILE, "blockysize": TILE}
+    _write_bands(path, grid, map_frame, {**tiles, "predictor": 3})
+
+
+def write_bathymetry_cog(path: Path, grid: ElevationGrid, map_frame: MapFrame) -> None:
+    """Write the same bands as cloud-optimised GeoTIFF (COG) with overviews.
+
+    Overviews are averages over the filled cells under them.
+
+    Raises
+    ------
+    ReadBackError
+        If the file does not read back as written.
+    """
+    layout = {"driver": "COG", "blocksize": TILE, "predictor": "FLOATING_POINT"}
+    overviews = {"overviews": "IGNORE_EXISTING", "overview_resampling": "average"}
+    _write_bands(path, grid, map_frame, {**layout, **overviews})
+
+
+def _write_bands(
+    path: Path, grid: ElevationGrid, map_frame: MapFrame, layout: dict[str, Any]
+) -> None:
     import rasterio
 
     bands = np.stack([grid.elevation, grid.density, grid.deviation]).astype(np.float32)
     profile = {
-        **{"driver": "GTiff", "dtype": "float32", "count": len(BANDS), "nodata": np.nan},
+        **{"dtype": "float32", "count": len(BANDS), "nodata": np.nan},
         **{"height": grid.cells.rows, "width": grid.cells.columns},
         **{"crs": rasterio.CRS.from_wkt(map_frame.crs.to_wkt())},
-        **{"transform": grid.cells.transform, "compress": "deflate", "predictor": 3},
-        **{"tiled": True, "blockxsize": TILE, "blockysize": TILE, "num_threads": 1},
+        **{"transform": grid.cells.transform, "compress": "deflate", "num_threads": 1},
+        **layout,
     }
     with whole_file(path) as partial:
         with rasterio.open(partial, "w", **profile) as file:
@@ -122,3 +145,27 @@ def write_bathymetry_tif(path: Path, grid: ElevationGrid, map_frame: MapFrame) -
             file.units = tuple(unit for _, unit in BANDS)
         with rasterio.open(partial) as file:
             require_read_back(path, "cells", np.array_equal(file.read(), bands, equal_nan=True))
+
+
+def read_bathymetry_tif(path: Path) -> ElevationGrid:
+    """Read a grid that `write_bathymetry_tif` wrote.
+
+    Raises
+    ------
+    ProductError
+        If the file has other bands.
+    """
+    import rasterio
+
+    with rasterio.open(path) as file:
+        if file.descriptions != tuple(name for name, _ in BANDS):
+            raise ProductError(f"{path}: not the bands of a bathyflash grid. Run the mission again")
+        elevation, density, deviation = file.read().astype(np.float64)
+        cells = CellGrid(
+            west=file.transform.c,
+            north=file.transform.f,
+            cell_size=file.transform.a,
+            rows=file.height,
+            columns=file.width,
+        )
+    return ElevationGrid(cells=cells, elevation=elevation, density=density, deviation=deviation)

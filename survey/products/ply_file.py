@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.points import PointCloud
-from survey.products.writing import ProductError, require_read_back, whole_file
+from survey.products.writing import ProductError, require_read_back, whole_file, write_whole
 from terrain.map_frame import MapFrame
 
 PLY_RECORD = np.dtype(
@@ -47,6 +48,9 @@ COLUMNS = {
     "substrate": "substrate",
 }
 """Names in the file of the scalar columns of a cloud."""
+
+STANDARD_COLUMNS = ("x", "y", "z", "time_s", "line", "classification")
+"""What a copy without our own columns keeps."""
 
 TRIPLES = {"position": "", "uncorrected": "uncorrected_", "truth": "true_"}
 """Prefixes in the file of the columns of a cloud that are places."""
@@ -92,9 +96,28 @@ def write_ply(path: Path, cloud: PointCloud, map_frame: MapFrame) -> None:
     records = _records(cloud, map_frame)
     with whole_file(path) as partial:
         with partial.open("wb") as file:
-            file.write(_header(len(cloud), map_frame).encode("ascii"))
+            file.write(_header(len(cloud), _comments(map_frame), records.dtype).encode("ascii"))
             records.tofile(file)
         require_read_back(path, "points", _read(partial)[1].tobytes() == records.tobytes())
+
+
+def copy_ply(source: Path, path: Path, *, standard_only: bool) -> None:
+    """Write a PLY of ours anew, whole or with `STANDARD_COLUMNS` alone.
+
+    Raises
+    ------
+    ProductError
+        If the source is another kind of PLY, is cut short or has no points.
+    ReadBackError
+        If the file does not read back as written.
+    """
+    comments, records = _read(source)
+    if len(records) == 0:
+        raise ProductError(f"{source}: no points in the file. Run the mission again")
+    if standard_only:
+        records = _columns(records, STANDARD_COLUMNS)
+    text = _header(len(records), comments, records.dtype)
+    write_whole(path, text.encode("ascii") + records.tobytes())
 
 
 def read_ply(path: Path) -> tuple[PointCloud, MapFrame]:
@@ -134,21 +157,33 @@ def _records(cloud: PointCloud, map_frame: MapFrame) -> NDArray[np.void]:
     return records
 
 
+def _columns(records: NDArray[np.void], names: Sequence[str]) -> NDArray[np.void]:
+    """Return some columns alone, packed as PLY has them."""
+    chosen = np.zeros(len(records), np.dtype([(name, records.dtype[name]) for name in names]))
+    for name in names:
+        chosen[name] = records[name]
+    return chosen
+
+
 def _triple(records: NDArray[np.void], prefix: str) -> NDArray[np.float64]:
     return np.stack([records[f"{prefix}{axis}"] for axis in "xyz"], axis=1)
 
 
-def _header(count: int, map_frame: MapFrame) -> str:
-    properties = (
-        f"property {PLY_TYPES[PLY_RECORD[name].str]} {name}" for name in PLY_RECORD.names or ()
-    )
+def _comments(map_frame: MapFrame) -> dict[str, str]:
+    return {
+        "epsg": str(map_frame.epsg),
+        "vertical_epsg": str(map_frame.vertical_epsg),
+        "origin_easting": repr(map_frame.easting),
+        "origin_northing": repr(map_frame.northing),
+    }
+
+
+def _header(count: int, comments: Mapping[str, str], columns: np.dtype[np.void]) -> str:
+    properties = (f"property {PLY_TYPES[columns[name].str]} {name}" for name in columns.names or ())
     lines = (
         "ply",
         "format binary_little_endian 1.0",
-        f"comment epsg {map_frame.epsg}",
-        f"comment vertical_epsg {map_frame.vertical_epsg}",
-        f"comment origin_easting {map_frame.easting!r}",
-        f"comment origin_northing {map_frame.northing!r}",
+        *(f"comment {name} {text}" for name, text in comments.items()),
         f"element vertex {count}",
         *properties,
         "end_header",
