@@ -134,7 +134,7 @@ def read_ply(path: Path) -> tuple[PointCloud, MapFrame]:
     places: dict[str, Any] = {
         name: map_frame.to_local(_triple(records, prefix)) for name, prefix in TRIPLES.items()
     }
-    normals = {name: _triple(records, prefix) for name, prefix in NORMALS.items()}
+    normals: dict[str, Any] = {name: _triple(records, prefix) for name, prefix in NORMALS.items()}
     scalars = {name: records[column].copy() for name, column in COLUMNS.items()}
     return PointCloud(**places, **normals, **scalars), map_frame
 
