@@ -65,6 +65,9 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
         seabed=mission.seabed,
         group_index=engine.water.group_index,
     )
+    on_surface, on_bottom = (
+        mission.budget.applied(cloud, frame=frame) for cloud in (on_surface, on_bottom)
+    )
     record = pixel_record(
         waveforms=waveforms,
         saturated=blind_at(blind=readings.blind, time=targets.time, noise=noise),

@@ -14,6 +14,7 @@ from survey.cloud.noise import NoiseModel
 from survey.cloud.posed_noise import PosedNoise
 from survey.cloud.ranging import surface_walk
 from survey.cloud.raw import RawReadings, raw_readings
+from survey.cloud.uncertainty import Budget
 from survey.flight.pose import Frame, Pose
 from survey.flight.trajectory import footprints, require_air
 from survey.optics.background import background_power
@@ -52,6 +53,7 @@ class Mission:
     engine: Engine
     level_error: float
     posed_noise: PosedNoise
+    budget: Budget
     products: ProductSettings
     raw_step: int | None
 
@@ -103,6 +105,11 @@ def prepare(scenario: Scenario) -> Mission:
         engine=_engine(scenario, seabed, water, surface),
         level_error=scenario.processing.water_level_error_m,
         posed_noise=posed_noise(scenario, frames[0], surface),
+        budget=Budget(
+            pulse_sigma=_seen_pulse(scenario),
+            group_index=water.group_index,
+            pixel_tangent=camera.pixel_tangent,
+        ),
         products=ProductSettings(
             title=scenario.mission.title,
             description=scenario.mission.description,
@@ -160,9 +167,8 @@ def noise_model(
     ``steady`` is that of sun and darkness in a bin, ``variance`` the squared Monte Carlo error of
     the light in one flash.
     """
-    receiver, laser = components.receiver(scenario), components.laser(scenario)
-    detector = components.detector(scenario)
-    sigma = hypot(laser.pulse_sigma, detector.timing_sigma)
+    receiver, detector = components.receiver(scenario), components.detector(scenario)
+    sigma = _seen_pulse(scenario)
     pad = int(np.ceil(3.0 * sigma / receiver.bin_width))
     return NoiseModel.build(
         settings=components.ranging_settings(scenario),
@@ -175,6 +181,11 @@ def noise_model(
         bin_start=receiver.gate_start,
         bin_width=receiver.bin_width,
     )
+
+
+def _seen_pulse(scenario: Scenario) -> float:
+    """Return the standard deviation of the pulse as the detector sees it [s]."""
+    return hypot(components.laser(scenario).pulse_sigma, components.detector(scenario).timing_sigma)
 
 
 def _mean_flash(engine: Engine, pose: Pose) -> tuple[FloatArray, FloatArray, FloatArray]:

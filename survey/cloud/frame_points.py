@@ -127,6 +127,8 @@ def surface_points(
         true_classification=np.where(wet, PointClass.WATER_SURFACE, PointClass.GROUND),
         substrate=np.where(wet, UNLABELLED, targets.substrate),
         true_elevation=targets.surface[..., 2],
+        targets=targets,
+        water_path=np.zeros(on_water.shape),
         depth=np.zeros(on_water.shape),
         echo=first,
     )
@@ -166,6 +168,8 @@ def bottom_points(
         true_elevation=seabed.elevation_at(
             position[..., 0].ravel(), position[..., 1].ravel()
         ).reshape(found.shape),
+        targets=targets,
+        water_path=targets.water_path,
         depth=np.where(found, line.level - position[..., 2], 0.0),
         echo=Echo(
             time=np.where(line.land, first.time, bottom.time),
@@ -199,10 +203,15 @@ def _cloud(
     true_classification: NDArray[np.int64] | NDArray[np.uint8],
     substrate: NDArray[np.int64] | NDArray[np.uint8],
     true_elevation: FloatArray,
+    targets: TrueTargets,
+    water_path: FloatArray,
     depth: FloatArray,
     echo: Echo,
 ) -> PointCloud:
-    """Return the chosen pixels of one frame as points, in the order of rows and columns."""
+    """Return the chosen pixels of one frame as points, in the order of rows and columns.
+
+    Without uncertainties: those come from `survey.cloud.uncertainty`.
+    """
     row, column = np.nonzero(which)
     count = len(row)
     return PointCloud(
@@ -213,6 +222,11 @@ def _cloud(
         true_classification=true_classification[which].astype(np.uint8),
         substrate=substrate[which].astype(np.uint8),
         true_elevation=true_elevation[which],
+        true_surface=targets.surface[which],
+        true_normal=targets.normal[which].astype(np.float32),
+        water_path=water_path[which].astype(np.float32),
+        tvu=np.full(count, np.nan, np.float32),
+        thu=np.full(count, np.nan, np.float32),
         time=frame.time + np.nan_to_num(echo.time[which]),
         depth=depth[which],
         counts=np.nan_to_num(echo.counts[which]).astype(np.float32),

@@ -33,7 +33,9 @@ class WaterPath:
     Parameters
     ----------
     entry : array (..., 3)
-        Where each ray meets the level surface [m].
+        Where each ray meets the surface [m].
+    normal : array (..., 3)
+        Unit normal of the surface there, upwards.
     air_time : array (...)
         Two-way time to it [s].
     direction : array (..., 3)
@@ -41,6 +43,7 @@ class WaterPath:
     """
 
     entry: FloatArray
+    normal: FloatArray
     air_time: FloatArray
     direction: FloatArray
 
@@ -72,7 +75,12 @@ def bend_at_surface(
     entry = position + rays * length[..., None]
     direction = rays / refractive_index
     direction[..., 2] = -np.sqrt(1.0 - np.sum(direction[..., :2] ** 2, axis=-1))
-    return WaterPath(entry=entry, air_time=2.0 * length / speed_of_light, direction=direction)
+    return WaterPath(
+        entry=entry,
+        normal=np.broadcast_to([0.0, 0.0, 1.0], entry.shape),
+        air_time=2.0 * length / speed_of_light,
+        direction=direction,
+    )
 
 
 def bend_at_waves(
@@ -92,6 +100,7 @@ def bend_at_waves(
     below = np.sqrt(1.0 - (1.0 - cosine**2) / refractive_index**2)
     return WaterPath(
         entry=position + rays * length[..., None],
+        normal=normal,
         air_time=2.0 * length / speed_of_light,
         direction=rays / refractive_index + (cosine / refractive_index - below)[..., None] * normal,
     )

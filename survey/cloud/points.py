@@ -54,6 +54,14 @@ class PointCloud:
         Code of what is truly there, see `terrain.substrate`; 0 for water and what has no label.
     true_elevation : array (n,)
         True elevation of seabed or sea surface at the measured place [m].
+    true_surface, true_normal : array (n, 3)
+        Where that ray truly meets the water [m], and the unit normal of the water there; on land
+        the land itself, and nan.
+    water_path : array (n,)
+        True one-way path of that ray in water [m]; 0 on land and for surface points.
+    tvu, thu : array (n,)
+        Total vertical and horizontal uncertainty, 95 % [m], see `survey.cloud.uncertainty`; nan
+        where no echo was placed.
     time : array (n,)
         Seconds since the start of the mission [s].
     depth : array (n,)
@@ -73,6 +81,11 @@ class PointCloud:
     true_classification: NDArray[np.uint8]
     substrate: NDArray[np.uint8]
     true_elevation: NDArray[np.float64]
+    true_surface: NDArray[np.float64]
+    true_normal: NDArray[np.float32]
+    water_path: NDArray[np.float32]
+    tvu: NDArray[np.float32]
+    thu: NDArray[np.float32]
     time: NDArray[np.float64]
     depth: NDArray[np.float64]
     counts: NDArray[np.float32]

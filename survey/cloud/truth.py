@@ -34,10 +34,14 @@ class TrueTargets:
     ----------
     surface : array (rows, columns, 3)
         Where they meet the water; on land, the land [m].
+    normal : array (rows, columns, 3)
+        Unit normal of the water there; nan on land.
     position : array (rows, columns, 3)
         Where they meet seabed or land [m]; nan where there is none.
     time : array (rows, columns)
         Two-way time to `position` [s].
+    water_path : array (rows, columns)
+        One-way path in water to `position` [m]; 0 on land, nan where there is none.
     depth : array (rows, columns)
         Of `position` under mean level, negative on land [m].
     classification : array (rows, columns)
@@ -47,8 +51,10 @@ class TrueTargets:
     """
 
     surface: FloatArray
+    normal: FloatArray
     position: FloatArray
     time: FloatArray
+    water_path: FloatArray
     depth: FloatArray
     classification: NDArray[np.uint8]
     substrate: NDArray[np.uint8]
@@ -82,8 +88,10 @@ def true_targets(
     wet_class = np.where(is_object, PointClass.SUBMERGED_OBJECT, PointClass.BATHYMETRIC)
     return TrueTargets(
         surface=np.where(dry[..., None], found, path.entry),
+        normal=np.where(dry[..., None], np.nan, path.normal),
         position=found,
         time=np.where(dry, path.air_time / air_length * land_length, in_water),
+        water_path=np.where(dry, 0.0, np.where(face >= 0, length, np.nan)),
         depth=surface.level - found[..., 2],
         classification=np.where(dry, PointClass.GROUND, wet_class).astype(np.uint8),
         substrate=substrate.astype(np.uint8),

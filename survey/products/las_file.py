@@ -36,6 +36,11 @@ EXTRA_BYTES: tuple[tuple[str, type[np.generic], str], ...] = (
     *((f"uncorrected_{axis}", np.float64, "without refraction, m") for axis in "xyz"),
     *((f"true_{axis}", np.float64, "true place of the pixel, m") for axis in "xyz"),
     ("true_elevation", np.float64, "true z at measured x, y, m"),
+    *((f"true_surface_{axis}", np.float64, "true crossing of the water, m") for axis in "xyz"),
+    *((f"true_normal_{axis}", np.float32, "true normal of the water") for axis in "xyz"),
+    ("true_water_path", np.float32, "true one-way path in water, m"),
+    ("total_thu", np.float32, "horizontal uncertainty 95 %, m"),
+    ("total_tvu", np.float32, "vertical uncertainty 95 %, m"),
     ("true_class", np.uint8, "class of what is truly there"),
     ("substrate", np.uint8, "true bottom, see metrics.json"),
 )
@@ -117,6 +122,11 @@ def read_laz(path: Path, map_frame: MapFrame, *, start_utc: datetime) -> PointCl
         true_classification=np.array(las.true_class),
         substrate=np.array(las.substrate),
         true_elevation=np.array(las.true_elevation),
+        true_surface=place("true_surface_"),
+        true_normal=np.stack([np.array(las[f"true_normal_{axis}"]) for axis in "xyz"], axis=1),
+        water_path=np.array(las.true_water_path),
+        tvu=np.array(las.total_tvu),
+        thu=np.array(las.total_thu),
         time=np.asarray(las.gps_time) - adjusted_gps_time(start_utc, np.zeros(1)),
         depth=np.array(las.depth_m, dtype=np.float64),
         counts=np.array(las.counts),
@@ -174,13 +184,23 @@ def scan_angle_deg(cloud: PointCloud, frames: Sequence[Frame]) -> NDArray[np.flo
 
 
 def _extra_columns(cloud: PointCloud, map_frame: MapFrame) -> dict[str, NDArray[Any]]:
-    places = {"uncorrected": cloud.uncorrected, "true": cloud.truth}
+    places = {
+        "uncorrected": cloud.uncorrected,
+        "true": cloud.truth,
+        "true_surface": cloud.true_surface,
+    }
     columns: dict[str, NDArray[Any]] = {
         f"{prefix}_{axis}": _compressible(map_frame.to_map(place)[:, index])
         for prefix, place in places.items()
         for index, axis in enumerate("xyz")
     }
+    columns |= {
+        f"true_normal_{axis}": cloud.true_normal[:, index] for index, axis in enumerate("xyz")
+    }
     return columns | {
+        "true_water_path": cloud.water_path,
+        "total_thu": cloud.thu,
+        "total_tvu": cloud.tvu,
         "frame": cloud.frame,
         "pixel_row": cloud.row,
         "pixel_column": cloud.column,

@@ -19,6 +19,11 @@ PLY_RECORD = np.dtype(
         *((f"uncorrected_{axis}", "<f8") for axis in "xyz"),
         *((f"true_{axis}", "<f8") for axis in "xyz"),
         ("true_elevation", "<f8"),
+        *((f"true_surface_{axis}", "<f8") for axis in "xyz"),
+        *((f"true_normal_{axis}", "<f4") for axis in "xyz"),
+        ("true_water_path", "<f4"),
+        ("total_tvu", "<f4"),
+        ("total_thu", "<f4"),
         ("time_s", "<f8"),
         ("depth_m", "<f8"),
         ("counts", "<f4"),
@@ -35,6 +40,9 @@ PLY_RECORD = np.dtype(
 PLY_TYPES = {"<f8": "double", "<f4": "float", "<u4": "uint", "<u2": "ushort", "|u1": "uchar"}
 COLUMNS = {
     "true_elevation": "true_elevation",
+    "water_path": "true_water_path",
+    "tvu": "total_tvu",
+    "thu": "total_thu",
     "time": "time_s",
     "depth": "depth_m",
     "counts": "counts",
@@ -52,8 +60,16 @@ COLUMNS = {
 STANDARD_COLUMNS = ("x", "y", "z", "time_s", "line", "classification")
 """What a copy without our own columns keeps."""
 
-TRIPLES = {"position": "", "uncorrected": "uncorrected_", "truth": "true_"}
+TRIPLES = {
+    "position": "",
+    "uncorrected": "uncorrected_",
+    "truth": "true_",
+    "true_surface": "true_surface_",
+}
 """Prefixes in the file of the columns of a cloud that are places."""
+
+NORMALS = {"true_normal": "true_normal_"}
+"""And of those that are directions."""
 
 
 def require_points(path: Path, cloud: PointCloud) -> None:
@@ -141,17 +157,19 @@ def read_ply(path: Path) -> tuple[PointCloud, MapFrame]:
     places: dict[str, Any] = {
         name: map_frame.to_local(_triple(records, prefix)) for name, prefix in TRIPLES.items()
     }
+    normals: dict[str, Any] = {name: _triple(records, prefix) for name, prefix in NORMALS.items()}
     scalars = {name: records[column].copy() for name, column in COLUMNS.items()}
-    return PointCloud(**places, **scalars), map_frame
+    return PointCloud(**places, **normals, **scalars), map_frame
 
 
 def _records(cloud: PointCloud, map_frame: MapFrame) -> NDArray[np.void]:
     records = np.zeros(len(cloud), dtype=PLY_RECORD)
     columns = cloud.columns()
-    for name, prefix in TRIPLES.items():
-        on_map = map_frame.to_map(columns[name])
+    triples = {prefix: map_frame.to_map(columns[name]) for name, prefix in TRIPLES.items()}
+    triples |= {prefix: columns[name] for name, prefix in NORMALS.items()}
+    for prefix, triple in triples.items():
         for index, axis in enumerate("xyz"):
-            records[f"{prefix}{axis}"] = on_map[:, index]
+            records[f"{prefix}{axis}"] = triple[:, index]
     for name, column in COLUMNS.items():
         records[column] = columns[name]
     return records

@@ -80,8 +80,10 @@ def test_a_ray_beside_the_seabed_has_no_target(look_at: Looks) -> None:
 def one_pixel(depth: float, time: float, kind: PointClass) -> TrueTargets:
     return TrueTargets(
         surface=np.zeros((1, 1, 3)),
+        normal=np.zeros((1, 1, 3)),
         position=np.zeros((1, 1, 3)),
         time=np.full((1, 1), time),
+        water_path=np.full((1, 1), depth),
         depth=np.full((1, 1), depth),
         classification=np.full((1, 1), kind, np.uint8),
         substrate=np.zeros((1, 1), np.uint8),

@@ -44,7 +44,8 @@ def test_ply_round_trip(small_survey: Any, tmp_path: Path) -> None:
     for name, column in small_survey.bottom.columns().items():
         again = cloud.columns()[name]
         assert again.dtype == column.dtype, name
-        tolerance = 2e-9 if name in ("position", "uncorrected", "truth") else 0.0
+        places = ("position", "uncorrected", "truth", "true_surface")
+        tolerance = 2e-9 if name in places else 0.0
         np.testing.assert_allclose(again, column, rtol=0.0, atol=tolerance, err_msg=name)
 
 
@@ -112,8 +113,8 @@ def test_laz_returns_intensity_and_scan_angle(small_survey: Any, tmp_path: Path)
 def test_laz_round_trip(small_survey: Any, tmp_path: Path) -> None:
     path = write(tmp_path / "bottom.laz", small_survey)
     cloud = read_laz(path, small_survey.map_frame, start_utc=small_survey.start_utc)
-    tolerances = {"position": 5.1e-4, "uncorrected": 5e-4, "truth": 5e-4, "true_elevation": 5e-4}
-    tolerances |= {"time": 1e-6, "depth": 1e-6}
+    places = ("uncorrected", "truth", "true_elevation", "true_surface")
+    tolerances = dict.fromkeys(places, 5e-4) | {"position": 5.1e-4, "time": 1e-6, "depth": 1e-6}
     for name, column in small_survey.bottom.columns().items():
         again = cloud.columns()[name]
         assert again.dtype == column.dtype, name
@@ -129,7 +130,9 @@ def test_extra_bytes_are_described(small_survey: Any, tmp_path: Path) -> None:
     extra = {dimension.name: dimension for dimension in las.point_format.extra_dimensions}
     wanted = ["frame", "pixel_row", "pixel_column", "depth_m", "snr", "counts"]
     wanted += [f"{kind}_{axis}" for kind in ("uncorrected", "true") for axis in "xyz"]
-    assert list(extra) == [*wanted, "true_elevation", "true_class", "substrate"]
+    wanted += ["true_elevation", *(f"true_surface_{axis}" for axis in "xyz")]
+    wanted += [*(f"true_normal_{axis}" for axis in "xyz"), "true_water_path"]
+    assert list(extra) == [*wanted, "total_thu", "total_tvu", "true_class", "substrate"]
     assert all(4 < len(dimension.description) <= 32 for dimension in extra.values())
 
 
