@@ -66,16 +66,16 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
         group_index=engine.water.group_index,
     )
     on_surface, on_bottom = (
-        mission.budget.applied(cloud, frame=frame) for cloud in (on_surface, on_bottom)
+        mission.calibration.applied(mission.budget.applied(cloud, frame=frame), frame=frame)
+        for cloud in (on_surface, on_bottom)
     )
     record = pixel_record(
         waveforms=waveforms,
         saturated=blind_at(blind=readings.blind, time=targets.time, noise=noise),
-        bottom=bottom,
         points=on_bottom,
         targets=targets,
         noise=in_doubt,
-        group_index=engine.water.group_index,
+        water=engine.water,
     )
     raw = mission.raw_of(readings)
     return FrameResult(bottom=on_bottom, surface=on_surface, record=record, raw=raw)

@@ -6,15 +6,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from survey.cloud.points import PointClass, PointCloud
+from survey.cloud.points import NOISE_CLASSES, PointClass, PointCloud
 
 
 def stitched(clouds: Sequence[PointCloud], *, cell_size: float) -> PointCloud:
     """Return the points of all frames, the best one in every cell of the map.
 
     Cells are squares aligned with the map. Where several points fall into one, a found echo wins
-    over "no bottom found" (45), then the higher signal-to-noise ratio, then the earlier pixel.
-    The result is in the order of frame, row and column.
+    over "no bottom found" (45) and that over noise (7, 18), then the higher signal-to-noise ratio,
+    then the earlier pixel. The result is in the order of frame, row and column.
 
     Parameters
     ----------
@@ -28,7 +28,8 @@ def stitched(clouds: Sequence[PointCloud], *, cell_size: float) -> PointCloud:
     if cell_size == 0.0 or len(cloud) == 0:
         return cloud
     east, north = np.floor(cloud.position[:, :2] / cell_size).astype(np.int64).T
-    missing = cloud.classification == PointClass.NO_BOTTOM_FOUND
+    missing = (cloud.classification == PointClass.NO_BOTTOM_FOUND).astype(np.uint8)
+    missing[np.isin(cloud.classification, NOISE_CLASSES)] = 2
     order = np.lexsort((np.arange(len(cloud)), -cloud.snr, missing, north, east))
     first = np.ones(len(order), np.bool_)
     first[1:] = (np.diff(east[order]) != 0) | (np.diff(north[order]) != 0)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import PixelRecord, PointClass, PointCloud
+from survey.cloud.points import NOISE_CLASSES, PixelRecord, PointClass, PointCloud
 from survey.cloud.truth import FALSE_BOTTOM_ERROR
 from survey.optics.water import WaterColumn
 from survey.products.cells import CellGrid, inside_ring
@@ -41,6 +41,7 @@ def metrics(
     frames                              records given
     points_bottom, _surface, _ground    points of classes 40 and 43; 41; 2
     points_no_bottom_found              points of class 45
+    points_noise                        of classes 7 and 18, in both clouds; in no other figure
     bias_m, rmse_m, p95_abs_error_m     mean, root mean square, 95th percentile of the absolute
                                         errors of bottom points, false bottoms included
     bias_standard_error_m               from the scatter of the frames' mean errors, weighted by
@@ -79,16 +80,19 @@ def metrics(
         If the survey area is empty or too large for such cells.
     """
     solid = bottom.select(np.isin(bottom.classification, BOTTOM_CLASSES))
+    first_echoes = surface.select(surface.classification == PointClass.WATER_SURFACE)
+    noise = (np.isin(each.classification, NOISE_CLASSES) for each in (bottom, surface))
     ground = bottom.select(bottom.classification == PointClass.GROUND)
     pixels = pixel_metrics(records) | stitched_depths(bottom, water_level=water_level)
     values = {
         "frames": len(records),
         "points_bottom": len(solid),
-        "points_surface": int((surface.classification == PointClass.WATER_SURFACE).sum()),
+        "points_surface": len(first_echoes),
         "points_ground": len(ground),
         "points_no_bottom_found": int((bottom.classification == PointClass.NO_BOTTOM_FOUND).sum()),
+        "points_noise": sum(int(which.sum()) for which in noise),
         **_error_metrics("", solid),
-        **_error_metrics("surface_", surface),
+        **_error_metrics("surface_", first_echoes),
         **_error_metrics("ground_", ground),
         "false_bottoms": int((np.abs(elevation_errors(solid)) > FALSE_BOTTOM_ERROR).sum()),
         **_coverage(solid, elevation_at, water_level, survey_area, cell_size),

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from survey.cloud.derived_surface import derived_surface
 from survey.cloud.points import Outcome, PointClass, PointCloud
 from survey.cloud.stitch import stitched
 from survey.flight.pose import Frame
@@ -21,14 +22,17 @@ from survey.products.frame_file import FrameResult
 from survey.products.grids import grid_elevation, write_bathymetry_tif
 from survey.products.json_file import write_json
 from survey.products.las_file import write_laz
+from survey.products.lines_file import write_lines_geojson
 from survey.products.mesh_files import has_triangles, write_bathymetry_glb
 from survey.products.pixels import explain_empty
 from survey.products.ply_file import write_ply
 from survey.products.report import write_report
+from survey.products.shadows import with_shadows
 from survey.products.substrates import substrate_metrics
 from survey.products.track_files import TrackFormat, write_trajectory_files
 from survey.products.trajectory_file import write_trajectory_csv
 from survey.products.writing import ProductError
+from survey.sensor.camera import Camera
 from terrain.seabed import Seabed
 
 FloatArray = NDArray[np.float64]
@@ -59,6 +63,8 @@ class ProductSettings:
         Standard deviations of the measured pose, see `Navigation.deviations`.
     water : WaterColumn
         Makes optical depths of depths.
+    camera : Camera
+        Tells what was in view and hidden.
     """
 
     title: str
@@ -72,6 +78,7 @@ class ProductSettings:
     trajectory_files: Sequence[TrackFormat]
     deviations: tuple[float, ...]
     water: WaterColumn
+    camera: Camera
 
 
 def write_products(
@@ -111,6 +118,14 @@ def write_products(
         survey_area=area,
         cell_size=settings.grid,
         reach=settings.pixel_spacing * 2**0.5,
+    )
+    coverage = with_shadows(
+        coverage,
+        frames=frames,
+        camera=settings.camera,
+        seabed=seabed,
+        level=settings.water_level,
+        refractive_index=settings.water.refractive_index,
     )
     write_coverage_geojson(folder / "coverage.geojson", coverage, seabed.map_frame)
     found = metrics(
@@ -155,7 +170,8 @@ def _write_clouds(
     seabed: Seabed,
     settings: ProductSettings,
 ) -> None:
-    for name, cloud in (("bottom", bottom), ("water_surface", surface)):
+    both = PointCloud.concatenate([surface, derived_surface(bottom, frames)])
+    for name, cloud in (("bottom", bottom), ("water_surface", both)):
         if len(cloud) == 0:
             continue
         write_ply(folder / f"{name}.ply", cloud, seabed.map_frame)
@@ -166,6 +182,7 @@ def _write_clouds(
             start_utc=settings.start_utc,
             frames=frames,
         )
+    write_lines_geojson(folder / "lines.geojson", frames, seabed.map_frame)
     write_trajectory_csv(
         folder / "trajectory.csv", frames, [frame.measured for frame in frames], seabed.map_frame
     )
