@@ -71,8 +71,8 @@ def write_laz(
     reflectance of the target, see `survey.cloud.reflectance`, in steps of 0.0001, clipped to 0 and
     65535, and 0 where there is no echo; the extra bytes ``reflectance`` have it unclipped, and
     ``counts`` the echo's photo-electrons. The scan angle lies across the track, positive to the
-    right. The point source is the survey line plus one. Surface is return 1 of 2, bottom 2 of 2, all
-    else 1 of 1.
+    right. The point source is the survey line plus one. Surface is return 1 of 2, bottom 2 of 2,
+    all else 1 of 1.
 
     Parameters
     ----------
