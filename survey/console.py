@@ -53,6 +53,10 @@ class PlainLines:
         self._total, self._start = total, self._clock()
         self._say(f"{total} frames to fly")
 
+    def noticed(self, text: str) -> None:
+        """Say it."""
+        self._say(text)
+
     def frame_done(self, index: int, seconds: float) -> None:
         """Say how far the mission is, not too often."""
         self._done += 1
@@ -118,6 +122,10 @@ class ProgressBar:
         self._begun = time.monotonic()
         self._bar.update(self._task, total=total)
         self._bar.start()
+
+    def noticed(self, text: str) -> None:
+        """Say it above the bar."""
+        self._console.print(text, highlight=False, markup=False)
 
     def frame_done(self, index: int, seconds: float) -> None:
         """Move the bar on."""

@@ -22,7 +22,9 @@ from survey.products.las_file import read_laz
 from survey.products.mesh_files import write_bathymetry_glb
 from survey.products.mesh_formats import write_bathymetry_mesh
 from survey.products.ply_file import copy_ply
-from survey.run_folder import MANIFEST, whole_frames
+from survey.run_folder import frames_of
+from survey.run_identity import found_manifest
+from survey.run_lock import require_free
 from terrain.map_frame import MapFrame
 
 CLOUDS = ("bottom", "water_surface")
@@ -59,7 +61,8 @@ class FinishedRun:
         FileNotFoundError
             When there is no such folder.
         UserError
-            When it holds no run, one without products, or products of other frames.
+            When it holds no run, one that is still flown or has no products, or products of other
+            frames.
         """
         _require_finished(folder)
         from survey.scenario import components
@@ -145,9 +148,10 @@ def parse_formats(text: str) -> list[str]:
 def _require_finished(folder: Path) -> None:
     if not folder.exists():
         raise FileNotFoundError(2, "No such file or directory", str(folder))
-    if not (folder / MANIFEST).exists():
+    if found_manifest(folder) is None:
         raise UserError(f"{folder}: holds no run. Fly one with bathyflash run SCENARIO -o {folder}")
-    flown = len(dict(whole_frames(folder)))
+    require_free(folder)
+    flown = len(frames_of(folder)[0])
     again = "The same bathyflash run goes on from here"
     if not (folder / "metrics.json").exists() or not (folder / "bottom.laz").exists():
         raise UserError(f"{folder}: not finished: {flown} whole frames, no products. {again}")

@@ -14,6 +14,9 @@ class Watcher(Protocol):
     def started(self, total: int) -> None:
         """So many frames are to be flown."""
 
+    def noticed(self, text: str) -> None:
+        """Something happened that the user should know of; it does not stop the mission."""
+
     def frame_done(self, index: int, seconds: float) -> None:
         """A frame is flown; it took so many seconds of one worker."""
 
@@ -31,6 +34,9 @@ class Unwatched:
     """
 
     def started(self, total: int) -> None:
+        """Do nothing."""
+
+    def noticed(self, text: str) -> None:
         """Do nothing."""
 
     def frame_done(self, index: int, seconds: float) -> None:

@@ -259,7 +259,7 @@ def test_runs_that_are_not_whole_are_refused(tmp_path: Path) -> None:
     status, text = said(str(folder))
     assert status == 2
     assert "holds no run" in text
-    (folder / "manifest.json").write_text("{}")
+    (folder / "manifest.json").write_text('{"scenario_sha256": "0"}')
     status, text = said(str(folder))
     assert status == 2
     assert "not finished: 0 whole frames, no products" in text
