@@ -10,18 +10,14 @@ from functools import cached_property
 from pathlib import Path
 
 from survey.errors import UserError
-from survey.products.grids import (
-    ElevationGrid,
-    grid_elevation,
-    read_bathymetry_tif,
-    write_bathymetry_cog,
-    write_bathymetry_tif,
-)
+from survey.products.cog_file import write_bathymetry_cog
+from survey.products.grids import ElevationGrid, grid_elevation
 from survey.products.las_copy import copy_las, open_points, read_points
 from survey.products.las_file import read_laz
 from survey.products.mesh_files import write_bathymetry_glb
 from survey.products.mesh_formats import write_bathymetry_mesh
 from survey.products.ply_file import copy_ply
+from survey.products.tif_file import read_bathymetry_tif, write_bathymetry_tif
 from survey.run_folder import frames_of
 from survey.run_identity import found_manifest
 from survey.run_lock import require_free

@@ -129,7 +129,7 @@ def fly(
     run = RunFolder.open(folder, scenario, refly=refly)
     with sole_pilot(folder), logged(folder, watch or Unwatched()) as told:
         _fly_missing(mission, run, workers=workers, frames=frames, watch=told)
-        found = _write_products(mission, run)
+        found = _write_products(mission, run, told)
         told.finished(summary(folder, found))
     return folder
 
@@ -151,17 +151,18 @@ def _fly_missing(
     write_performance(run.path / "performance.json", clock)
 
 
-def _write_products(mission: Mission, run: RunFolder) -> dict[str, Any]:
+def _write_products(mission: Mission, run: RunFolder, watch: Watcher) -> dict[str, Any]:
     """Write the products of all frames that are whole, and return the metrics."""
     present = [frame for frame in mission.frames if frame.index in run.whole]
     if not present:
         raise UserError(f"{run.path}: no frame was flown. Choose frames with --frames A:B")
     return write_products(
         run.path,
-        results=run.read([frame.index for frame in present]),
+        read=run.frame,
         frames=present,
         seabed=mission.seabed,
         settings=mission.products,
+        watch=watch,
     )
 
 

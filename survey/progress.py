@@ -20,6 +20,12 @@ class Watcher(Protocol):
     def frame_done(self, index: int, seconds: float) -> None:
         """A frame is flown; it took so many seconds of one worker."""
 
+    def writing(self, total: int) -> None:
+        """The products are written, in so many steps; a later call tells it better."""
+
+    def written(self, steps: int) -> None:
+        """So many more of these steps are done."""
+
     def finished(self, summary: str) -> None:
         """All is written; the summary is one or more lines for the user."""
 
@@ -40,6 +46,12 @@ class Unwatched:
         """Do nothing."""
 
     def frame_done(self, index: int, seconds: float) -> None:
+        """Do nothing."""
+
+    def writing(self, total: int) -> None:
+        """Do nothing."""
+
+    def written(self, steps: int) -> None:
         """Do nothing."""
 
     def finished(self, summary: str) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import shutil
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -91,9 +90,9 @@ class RunFolder:
         write_note(self.path / JOURNAL, Note(frame=index, sha256=sha256, done=time.time()))
         self.whole[index] = sha256
 
-    def read(self, indices: Sequence[int]) -> list[FrameResult]:
-        """Read frames in the order given."""
-        return [read_frame(self.frame_path(index)) for index in indices]
+    def frame(self, index: int) -> FrameResult:
+        """Read a frame."""
+        return read_frame(self.frame_path(index))
 
 
 def _is_left_behind(file: Path) -> bool:

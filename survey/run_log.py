@@ -52,6 +52,14 @@ class Logged:
         self._write(f"frame {index}: {seconds:.2f} s")
         self._watcher.frame_done(index, seconds)
 
+    def writing(self, total: int) -> None:
+        """Tell it on."""
+        self._watcher.writing(total)
+
+    def written(self, steps: int) -> None:
+        """Tell it on."""
+        self._watcher.written(steps)
+
     def finished(self, summary: str) -> None:
         """Note what came of it."""
         self._write(summary)

@@ -1,27 +1,30 @@
-"""Gridded bathymetry: GeoTIFF, plain or cloud-optimised."""
+"""Gridded bathymetry."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.points import PointClass, PointCloud
 from survey.products.cells import CellGrid
-from survey.products.writing import ProductError, require_read_back, whole_file
+from survey.products.writing import ProductError
 from terrain.map_frame import MapFrame
 
 FloatArray = NDArray[np.float64]
 SOLID_CLASSES = (PointClass.GROUND, PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT)
-BANDS = (("elevation", "m"), ("density", "1/m2"), ("standard_deviation", "m"))
-TILE = 256
+BANDS = (
+    ("elevation", "m"),
+    ("density", "1/m2"),
+    ("standard_deviation", "m"),
+    ("uncertainty_95", "m"),
+)
+MOST_OVERVIEW_CELLS = 1_000_000
 
 
 @dataclass(frozen=True, kw_only=True)
-class ElevationGrid:
+class ElevationMap:
     """Seabed and land by cells, row 0 in the north.
 
     Parameters
@@ -30,16 +33,35 @@ class ElevationGrid:
         Where the cells lie on the map.
     elevation : array (rows, columns)
         Median elevation of the points in a cell [m], nan where there is none.
-    density : array (rows, columns)
-        Points a square metre [1/m2].
-    deviation : array (rows, columns)
-        Standard deviation of their elevations, n - 1 [m], nan below two points.
     """
 
     cells: CellGrid
     elevation: FloatArray
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElevationGrid(ElevationMap):
+    """The same with what the points in the cells tell beside.
+
+    Parameters
+    ----------
+    density : array (rows, columns)
+        Points a square metre [1/m2].
+    deviation : array (rows, columns)
+        Standard deviation of their elevations, n - 1 [m], nan below two points.
+    uncertainty : array (rows, columns)
+        Root mean square of their total vertical uncertainties, 95 % [m]: not smaller for many
+        points, since those of a flash err together; nan where none is known.
+    """
+
     density: FloatArray
     deviation: FloatArray
+    uncertainty: FloatArray
+
+    def bands(self) -> NDArray[np.float32]:
+        """Return what stands in files (4, rows, columns), in the order of `BANDS`."""
+        bands = (self.elevation, self.density, self.deviation, self.uncertainty)
+        return np.stack(bands).astype(np.float32)
 
 
 def grid_elevation(cloud: PointCloud, map_frame: MapFrame, *, cell_size: float) -> ElevationGrid:
@@ -59,13 +81,27 @@ def grid_elevation(cloud: PointCloud, map_frame: MapFrame, *, cell_size: float) 
     ProductError
         If the cloud has no such point, or the raster would be too large.
     """
-    on_map = map_frame.to_map(cloud.position[np.isin(cloud.classification, SOLID_CLASSES)])
+    on_map, tvu = solid_places(cloud, map_frame), solid_tvu(cloud)
     if on_map.shape[0] == 0:
         raise ProductError(
             f"grid: none of the {len(cloud)} points is seabed, object or ground. "
             "See the outcomes of the pixels for why"
         )
-    cells = CellGrid.covering(on_map, cell_size=cell_size)
+    return gridded(on_map, CellGrid.covering(on_map, cell_size=cell_size), tvu)
+
+
+def solid_places(cloud: PointCloud, map_frame: MapFrame) -> FloatArray:
+    """Return the points of seabed, objects and dry ground (n, 3) [m, map]."""
+    return map_frame.to_map(cloud.position[np.isin(cloud.classification, SOLID_CLASSES)])
+
+
+def solid_tvu(cloud: PointCloud) -> FloatArray:
+    """Return the vertical uncertainties of these points (n,) [m]."""
+    return cloud.tvu[np.isin(cloud.classification, SOLID_CLASSES)].astype(np.float64)
+
+
+def gridded(on_map: FloatArray, cells: CellGrid, tvu: FloatArray) -> ElevationGrid:
+    """Return places (n, 3), all inside, with their uncertainties (n,) by cells [m, map]."""
     index = cells.index_of(on_map)
     order = np.lexsort((on_map[:, 2], index))
     count = np.bincount(index, minlength=cells.rows * cells.columns)
@@ -73,9 +109,52 @@ def grid_elevation(cloud: PointCloud, map_frame: MapFrame, *, cell_size: float) 
     return ElevationGrid(
         cells=cells,
         elevation=elevation.reshape(cells.shape),
-        density=count.reshape(cells.shape) / cell_size**2,
+        density=count.reshape(cells.shape) / cells.cell_size**2,
         deviation=deviation.reshape(cells.shape),
+        uncertainty=_root_mean_square(tvu, index, count.size).reshape(cells.shape),
     )
+
+
+def _root_mean_square(values: FloatArray, owner: NDArray[np.intp], size: int) -> FloatArray:
+    """Return it by owner (size,), nan where none has a value."""
+    known = np.isfinite(values)
+    count = np.bincount(owner[known], minlength=size)
+    squares = np.bincount(owner[known], values[known] ** 2, size)
+    mean = np.divide(squares, count, out=np.full(size, np.nan), where=count > 0)
+    return np.asarray(np.sqrt(mean))
+
+
+class Overview:
+    """A grid of at most a million cells, for pictures and meshes, from the parts of a larger one.
+
+    So many cells are taken together as are needed; of several the mean of the medians is taken.
+    """
+
+    def __init__(self, cells: CellGrid) -> None:
+        factor = int(np.ceil(np.sqrt(cells.rows * cells.columns / MOST_OVERVIEW_CELLS)))
+        self._fine, self._factor = cells, factor
+        self._cells = replace(
+            cells,
+            cell_size=cells.cell_size * factor,
+            rows=-(-cells.rows // factor),
+            columns=-(-cells.columns // factor),
+        )
+        self._sum, self._count = np.zeros((2, *self._cells.shape))
+
+    def add(self, grid: ElevationGrid) -> None:
+        """Add a part; what lies outside is left out."""
+        rows, columns = self._fine.window(grid.cells)
+        elevation = grid.elevation[grid.cells.window(self._fine)]
+        row, column = np.nonzero(np.isfinite(elevation))
+        place = (rows.start + row) // self._factor, (columns.start + column) // self._factor
+        np.add.at(self._sum, place, elevation[row, column])
+        np.add.at(self._count, place, 1.0)
+
+    def map(self) -> ElevationMap:
+        """Return it."""
+        empty = self._count == 0.0
+        elevation = np.where(empty, np.nan, self._sum / np.where(empty, 1.0, self._count))
+        return ElevationMap(cells=self._cells, elevation=elevation)
 
 
 def _cell_statistics(z: FloatArray, count: NDArray[np.intp]) -> tuple[FloatArray, FloatArray]:
@@ -93,79 +172,3 @@ def _cell_statistics(z: FloatArray, count: NDArray[np.intp]) -> tuple[FloatArray
     variance = (squares[several] - total[several] ** 2 / count[several]) / (count[several] - 1)
     deviation[several] = np.sqrt(np.maximum(variance, 0.0))
     return median, deviation
-
-
-def write_bathymetry_tif(path: Path, grid: ElevationGrid, map_frame: MapFrame) -> None:
-    """Write the grid as a tiled GeoTIFF: elevation, density, standard deviation, float32.
-
-    North is up, edges are whole multiples of the cell size, the CRS is compound, empty cells
-    are nan (in the density band 0).
-
-    Raises
-    ------
-    ReadBackError
-        If the file does not read back as written.
-    """
-    tiles = {"driver": "GTiff", "tiled": True, "blockxsize": TILE, "blockysize": TILE}
-    _write_bands(path, grid, map_frame, {**tiles, "predictor": 3})
-
-
-def write_bathymetry_cog(path: Path, grid: ElevationGrid, map_frame: MapFrame) -> None:
-    """Write the same bands as cloud-optimised GeoTIFF (COG) with overviews.
-
-    Overviews are averages over the filled cells under them.
-
-    Raises
-    ------
-    ReadBackError
-        If the file does not read back as written.
-    """
-    layout = {"driver": "COG", "blocksize": TILE, "predictor": "FLOATING_POINT"}
-    overviews = {"overviews": "IGNORE_EXISTING", "overview_resampling": "average"}
-    _write_bands(path, grid, map_frame, {**layout, **overviews})
-
-
-def _write_bands(
-    path: Path, grid: ElevationGrid, map_frame: MapFrame, layout: dict[str, Any]
-) -> None:
-    import rasterio
-
-    bands = np.stack([grid.elevation, grid.density, grid.deviation]).astype(np.float32)
-    profile = {
-        **{"dtype": "float32", "count": len(BANDS), "nodata": np.nan},
-        **{"height": grid.cells.rows, "width": grid.cells.columns},
-        **{"crs": rasterio.CRS.from_wkt(map_frame.crs.to_wkt())},
-        **{"transform": grid.cells.transform, "compress": "deflate", "num_threads": 1},
-        **layout,
-    }
-    with whole_file(path) as partial:
-        with rasterio.open(partial, "w", **profile) as file:
-            file.write(bands)
-            file.descriptions = tuple(name for name, _ in BANDS)
-            file.units = tuple(unit for _, unit in BANDS)
-        with rasterio.open(partial) as file:
-            require_read_back(path, "cells", np.array_equal(file.read(), bands, equal_nan=True))
-
-
-def read_bathymetry_tif(path: Path) -> ElevationGrid:
-    """Read a grid that `write_bathymetry_tif` wrote.
-
-    Raises
-    ------
-    ProductError
-        If the file has other bands.
-    """
-    import rasterio
-
-    with rasterio.open(path) as file:
-        if file.descriptions != tuple(name for name, _ in BANDS):
-            raise ProductError(f"{path}: not the bands of a bathyflash grid. Run the mission again")
-        elevation, density, deviation = file.read().astype(np.float64)
-        cells = CellGrid(
-            west=file.transform.c,
-            north=file.transform.f,
-            cell_size=file.transform.a,
-            rows=file.height,
-            columns=file.width,
-        )
-    return ElevationGrid(cells=cells, elevation=elevation, density=density, deviation=deviation)

@@ -15,9 +15,11 @@ from typer.testing import CliRunner
 from survey.cli import app
 from survey.errors import UserError
 from survey.export import FORMATS, FinishedRun, export_run, parse_formats
-from survey.products.grids import grid_elevation, write_bathymetry_cog, write_bathymetry_tif
+from survey.products.cog_file import write_bathymetry_cog
+from survey.products.grids import BANDS, grid_elevation
 from survey.products.las_file import write_laz
 from survey.products.ply_file import write_ply
+from survey.products.tif_file import write_bathymetry_tif
 from survey.products.writing import ProductError
 
 CELL = 6.0
@@ -162,9 +164,9 @@ def test_cog_is_tiled_with_overviews_before_the_data(survey_of: Any, tmp_path: P
     write_bathymetry_cog(path, grid, survey.map_frame)
     with rasterio.open(path) as file:
         assert file.tags(ns="IMAGE_STRUCTURE")["LAYOUT"] == "COG"
-        assert file.block_shapes == [(256, 256)] * 3
+        assert file.block_shapes == [(256, 256)] * 4
         assert file.overviews(1) == [2, 4]
-        assert file.descriptions == ("elevation", "density", "standard_deviation")
+        assert file.descriptions == tuple(name for name, _ in BANDS)
         assert file.crs.to_wkt().startswith("COMPD_CS")
     directories = _directories(path.read_bytes())
     assert len(directories) == 3

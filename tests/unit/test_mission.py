@@ -52,6 +52,7 @@ class Log:
     def __init__(self) -> None:
         self.total, self.flown, self.summary = -1, set[int](), ""
         self.notices = list[str]()
+        self.steps, self.written_steps = 0, 0
 
     def started(self, total: int) -> None:
         self.total = total
@@ -61,6 +62,12 @@ class Log:
 
     def frame_done(self, index: int, seconds: float) -> None:
         self.flown.add(index)
+
+    def writing(self, total: int) -> None:
+        self.steps = total
+
+    def written(self, steps: int) -> None:
+        self.written_steps += steps
 
     def finished(self, summary: str) -> None:
         self.summary = summary
@@ -91,6 +98,7 @@ def test_a_mission_leaves_every_product_and_finds_the_seabed(
     assert found["p95_abs_error_m"] < 0.4
     assert abs(found["surface_bias_m"]) < 0.1
     assert (log.total, log.flown) == (3, {0, 1, 2})
+    assert log.written_steps == log.steps >= 6
     assert f"{found['points_bottom']} bottom points" in log.summary
 
 

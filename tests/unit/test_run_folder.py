@@ -83,7 +83,7 @@ def test_a_run_is_taken_up_where_it_stopped(
     again = RunFolder.open(tmp_path / "run", scenario)
     assert again.whole == run.whole
     assert set(again.whole) == {0, 3}
-    assert frame_bytes(again.read([3])[0]) == frame_bytes(result)
+    assert frame_bytes(again.frame(3)) == frame_bytes(result)
 
 
 @pytest.mark.parametrize("damage", ["gone", "changed"])
