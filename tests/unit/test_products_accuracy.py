@@ -190,7 +190,7 @@ def test_nothing_found_is_null_not_nan(small_survey: Any) -> None:
 
 @pytest.mark.parametrize(
     ("outcome", "words"),
-    [(Outcome.TOO_DEEP, "too deep or too turbid"), (Outcome.OUTSIDE_GATE, "outside the receiv")],
+    [(Outcome.TOO_DEEP, "too deep in such water"), (Outcome.OUTSIDE_GATE, "outside the receiv")],
 )
 def test_an_empty_cloud_is_explained(small_survey: Any, outcome: Outcome, words: str) -> None:
     record = small_survey.records[5]
