@@ -15,8 +15,7 @@ from terrain.substrate import UNLABELLED
 def derived_surface(bottom: PointCloud, frames: Sequence[Frame]) -> PointCloud:
     """Return for every bottom point (40, 43) where its ray was taken to enter the water.
 
-    That is the point of the straight ray from the measured pose that lies as high above the bottom
-    point as the point is deep. Truth is the true crossing; the point has no echo of its own, hence
+    That is the point of the straight ray from the measured pose at ``surface_elevation``. Truth is the true crossing; the point has no echo of its own, hence
     no counts, and no uncertainty.
 
     Parameters
@@ -32,7 +31,7 @@ def derived_surface(bottom: PointCloud, frames: Sequence[Frame]) -> PointCloud:
     of_point = np.array([index[number] for number in cloud.frame.tolist()], dtype=np.intp)
     sensor = sensors[of_point]
     ray = cloud.uncorrected - sensor
-    fall = sensor[:, 2] - (cloud.position[:, 2] + cloud.depth)
+    fall = sensor[:, 2] - cloud.surface_elevation
     entry = sensor + ray * (fall / -ray[:, 2])[:, None]
     nothing = np.zeros(len(cloud), np.float32)
     unknown = np.full(len(cloud), np.nan, np.float32)

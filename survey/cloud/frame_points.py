@@ -122,6 +122,7 @@ def surface_points(
     wet = targets.classification != PointClass.GROUND
     return _cloud(
         which=on_water | in_air,
+        line=line,
         frame=frame,
         position=line.first,
         uncorrected=line.first,
@@ -172,6 +173,7 @@ def bottom_points(
     )
     return _cloud(
         which=np.ones(found.shape, np.bool_),
+        line=line,
         frame=frame,
         position=position,
         uncorrected=np.where(on_land, line.first, np.where(in_water, straight, position)),
@@ -210,6 +212,7 @@ def _stands_out(elevation: FloatArray, found: BoolArray) -> BoolArray:
 def _cloud(
     *,
     which: BoolArray,
+    line: WaterLine,
     frame: Frame,
     position: FloatArray,
     uncorrected: FloatArray,
@@ -244,6 +247,7 @@ def _cloud(
         water_path=water_path[which].astype(np.float32),
         tvu=np.full(count, np.nan, np.float32),
         thu=np.full(count, np.nan, np.float32),
+        surface_elevation=np.where(line.land, np.nan, line.path.entry[..., 2])[which],
         reflectance=np.full(count, np.nan, np.float32),
         true_reflectance=reflectance[which].astype(np.float32),
         time=frame.time + np.nan_to_num(echo.time[which]),

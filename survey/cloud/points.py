@@ -76,6 +76,8 @@ class PointCloud:
     tvu, thu : array (n,)
         Total vertical and horizontal uncertainty, 95 % [m], see `survey.cloud.uncertainty`; nan
         where no echo was placed.
+    surface_elevation : array (n,)
+        Of the water where the point's ray was taken to enter it [m, local]; nan on land.
     reflectance : array (n,)
         Of a diffuse target there that would send back the counts, see `survey.cloud.reflectance`
         [1]; nan where there is no echo.
@@ -105,6 +107,7 @@ class PointCloud:
     water_path: NDArray[np.float32]
     tvu: NDArray[np.float32]
     thu: NDArray[np.float32]
+    surface_elevation: NDArray[np.float64]
     reflectance: NDArray[np.float32]
     true_reflectance: NDArray[np.float32]
     time: NDArray[np.float64]

@@ -142,6 +142,7 @@ def _cloud(
         water_path=np.maximum(0.25 - truth[:, 2], 0.0).astype(np.float32),
         tvu=np.full(n, 0.2, np.float32),
         thu=np.full(n, 1.5, np.float32),
+        surface_elevation=np.full(n, 0.25),
         reflectance=np.linspace(0.0, 10.0, n, dtype=np.float32),
         true_reflectance=np.full(n, 0.1, np.float32),
         time=np.full(n, frame.time),

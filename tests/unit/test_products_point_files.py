@@ -133,7 +133,7 @@ def test_extra_bytes_are_described(small_survey: Any, tmp_path: Path) -> None:
     wanted += [f"{kind}_{axis}" for kind in ("uncorrected", "true") for axis in "xyz"]
     wanted += ["true_elevation", *(f"true_surface_{axis}" for axis in "xyz")]
     wanted += [*(f"true_normal_{axis}" for axis in "xyz"), "true_water_path"]
-    wanted += ["total_thu", "total_tvu", "reflectance", "true_reflectance"]
+    wanted += ["total_thu", "total_tvu", "surface_z", "reflectance", "true_reflectance"]
     assert list(extra) == [*wanted, "true_class", "substrate"]
     assert all(4 < len(dimension.description) <= 32 for dimension in extra.values())
 
