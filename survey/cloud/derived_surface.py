@@ -15,8 +15,9 @@ from terrain.substrate import UNLABELLED
 def derived_surface(bottom: PointCloud, frames: Sequence[Frame]) -> PointCloud:
     """Return for every bottom point (40, 43) where its ray was taken to enter the water.
 
-    That is the point of the straight ray from the measured pose at ``surface_elevation``. Truth is the true crossing; the point has no echo of its own, hence
-    no counts, and no uncertainty.
+    That is the point of the straight ray from the measured pose at ``surface_elevation``. Truth is
+    the true crossing; the point has no echo of its own, hence no counts,
+    and no uncertainty.
 
     Parameters
     ----------
