@@ -124,6 +124,8 @@ class PointCloud:
 
     def select(self, which: NDArray[Any]) -> PointCloud:
         """Return the points that a mask or an index array names, in its order."""
+        if isinstance(which, np.ndarray) and which.dtype == np.bool_:
+            which = np.flatnonzero(which)
         return PointCloud(**{name: column[which] for name, column in self.columns().items()})
 
     def columns(self) -> dict[str, NDArray[Any]]:

@@ -66,9 +66,9 @@ class SurveyedHull:
     def __init__(self) -> None:
         self._corners, self._waiting = np.zeros((0, 2)), [np.zeros((0, 2))]
 
-    def add(self, record: PixelRecord) -> None:
-        """Add a frame."""
-        self._waiting.append(looked_at(record)[0])
+    def add(self, places: FloatArray) -> None:
+        """Add the places of a frame (n, 2) [m]."""
+        self._waiting.append(places)
         if sum(len(places) for places in self._waiting) > PLACES_AT_ONCE:
             self._corners, self._waiting = self._merged(), []
 
@@ -98,7 +98,7 @@ def hull_of(records: Iterable[PixelRecord]) -> FloatArray:
     """Return the ring of `SurveyedHull` around all that several frames look at."""
     hull = SurveyedHull()
     for record in records:
-        hull.add(record)
+        hull.add(looked_at(record)[0])
     return hull.ring()
 
 

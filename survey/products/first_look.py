@@ -40,20 +40,19 @@ class FirstLook:
         """Add a frame."""
         self.pixels.add(result.record)
         self.substrates.add_frame(result)
-        self.hull.add(result.record)
+        places, _ = looked_at(result.record)
+        self.hull.add(places)
         self.surface_points += len(result.surface)
         ground = result.bottom.classification == PointClass.GROUND
         self.ground_points += int(ground.sum())
         solid = extent(solid_places(result.bottom, self._map_frame))
         self._solid = joined(self._solid, solid)
-        self._extents.append(self._extent_of(result))
+        self._extents.append(self._extent_of(result, places))
         self._points.append(len(result.bottom) + len(result.surface))
 
-    def _extent_of(self, result: FrameResult) -> FloatArray:
-        places = looked_at(result.record)[0] + self._map_frame.origin[:2]
-        clouds = (result.bottom, result.surface)
-        on_map = (self._map_frame.to_map(cloud.position) for cloud in clouds)
-        return joined(extent(places), *(extent(places) for places in on_map))
+    def _extent_of(self, result: FrameResult, places: FloatArray) -> FloatArray:
+        clouds = (result.bottom.position, result.surface.position, places)
+        return joined(*map(extent, clouds)) + np.tile(self._map_frame.origin[:2], 2)
 
     @property
     def extents(self) -> FloatArray:

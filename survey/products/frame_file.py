@@ -7,6 +7,7 @@ import zipfile
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -88,11 +89,11 @@ def read_frame(path: Path) -> FrameResult:
         When the file is not whole.
     """
     try:
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
+        with zipfile.ZipFile(path) as archive:
             return FrameResult(
-                bottom=PointCloud(**_part(arrays, "bottom")),
-                surface=PointCloud(**_part(arrays, "surface")),
-                record=PixelRecord(**_part(arrays, "pixel")),
+                bottom=PointCloud(**_columns(archive, "bottom")),
+                surface=PointCloud(**_columns(archive, "surface")),
+                record=PixelRecord(**_columns(archive, "pixel")),
             )
     except (zipfile.BadZipFile, zlib.error, EOFError, KeyError, TypeError, ValueError) as fault:
         raise ValueError(f"{path}: not a whole frame ({fault}). Delete it and run again") from None
@@ -103,10 +104,26 @@ def read_raw(path: Path) -> RawReadings | None:
 
     ``processing.keep_waveforms`` says whether a run keeps it.
     """
-    with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
-        return RawReadings(**_part(arrays, "raw")) if "raw" in arrays else None
+    with zipfile.ZipFile(path) as archive:
+        kept = "raw.npy" in archive.namelist()
+        return RawReadings(**_columns(archive, "raw")) if kept else None
 
 
-def _part(arrays: Mapping[str, NDArray[np.void]], name: str) -> dict[str, NDArray[Any]]:
-    record = arrays[name]
-    return {column: record[column] for column in record.dtype.names or ()}
+def _columns(archive: zipfile.ZipFile, name: str) -> dict[str, NDArray[Any]]:
+    content = archive.read(f"{name}.npy")
+    start = len(np.lib.format.MAGIC_PREFIX) + 4 + int.from_bytes(content[8:10], "little")
+    kind = _kind(content[:start])
+    if kind.itemsize == 0:
+        record = np.zeros((), kind)
+    else:
+        (record,) = np.frombuffer(content, kind, offset=start, count=1)
+    return {column: record[column] for column in kind.names or ()}
+
+
+@lru_cache(maxsize=64)
+def _kind(header: bytes) -> np.dtype[np.void]:
+    """Return the type of a record: frames of a mission share a few, which take long to parse."""
+    file = io.BytesIO(header)
+    np.lib.format.read_magic(file)
+    _, _, kind = np.lib.format.read_array_header_1_0(file)
+    return kind

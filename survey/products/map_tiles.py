@@ -15,7 +15,8 @@ FloatArray = NDArray[np.float64]
 BLOCK = 256
 """Cells along the side of a block of the GeoTIFF; tiles are 2^n of it, or a 2^n-th."""
 
-POINTS_OF_A_TILE, SIDE_OF_A_TILE = 300_000, 4 * BLOCK
+SIDE_OF_A_TILE = 4 * BLOCK
+"""Cells along the side of the largest tile."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,7 +65,7 @@ def map_tiles(
     points: NDArray[np.int64],
     lattice: CellGrid,
     margin: float,
-    most: int = POINTS_OF_A_TILE,
+    most: int,
 ) -> Iterator[MapTile]:
     """Yield the tiles that frames reach: a square over all is quartered until few points remain.
 
@@ -97,12 +98,13 @@ def map_tiles(
     if known.size == 0:
         return
     west, south, east, north = extents[known].T
-    along = max(lattice.north - south.min(), north.max() - lattice.north)
-    across = max(lattice.west - west.min(), east.max() - lattice.west)
-    blocks = int((max(along, across) + margin) / (BLOCK * lattice.cell_size)) + 1
-    half = BLOCK << (blocks - 1).bit_length()
+    size = BLOCK * lattice.cell_size
+    before = int((max(north.max() - lattice.north, lattice.west - west.min()) + margin) / size)
+    after = int((max(lattice.north - south.min(), east.max() - lattice.west) + margin) / size)
+    first = before + 1 + before % 2  # odd: larger tiles then have no border along the lattice's
+    side = BLOCK << (first + after).bit_length()
     quarters = _Quarters(extents=extents, points=points, lattice=lattice, margin=margin, most=most)
-    yield from quarters.within(-half, -half, 2 * half, known)
+    yield from quarters.within(-first * BLOCK, -first * BLOCK, side, known)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -46,24 +46,20 @@ class PixelTally:
     def __init__(self) -> None:
         self.frames = 0
         self.outcomes, self.dry = np.zeros(len(Outcome), np.int64), False
-        self._depths = DepthBins(("found", "detectable", "found_and_detectable"))
+        self._depths = DepthBins(("found", "detectable"))
         self._errors = ErrorTally()
 
     def add(self, record: PixelRecord) -> None:
         """Add the wet pixels of a frame."""
         wet = record.true_depth > 0.0
-        found = record.outcome[wet] == Outcome.FOUND
+        outcome = record.outcome[wet]
+        found = outcome == Outcome.FOUND
         detectable = record.detection_probability[wet] >= DETECTABLE
         error = record.monte_carlo_relative_error[wet]
         self.frames += 1
-        self.outcomes += np.bincount(record.outcome[wet], minlength=len(Outcome))
+        self.outcomes += np.bincount(outcome, minlength=len(Outcome))
         self.dry |= bool((record.outcome == Outcome.DRY).any())
-        self._depths.add(
-            record.true_depth[wet],
-            found=found,
-            detectable=detectable,
-            found_and_detectable=found & detectable,
-        )
+        self._depths.add(record.true_depth[wet], found=found, detectable=detectable)
         self._errors.add(error[np.isfinite(error) & (record.bottom_counts[wet] > 0.0)])
 
     def metrics(self) -> dict[str, Any]:
@@ -92,7 +88,7 @@ class PixelTally:
         limit = depths.deepest("detectable", HALF)
         detectable = depths.total("detectable")
         return {
-            "pixels_wet": depths.total("members"),
+            "pixels_wet": depths.total(),
             "missed": {
                 cause.name.lower(): int(self.outcomes[cause])
                 for cause in Outcome
@@ -101,21 +97,21 @@ class PixelTally:
             "monte_carlo_relative_error": errors.quantile_of_absolute(0.5)
             if errors.count
             else None,
-            "found_fraction": share(depths.total("found"), depths.total("members")),
+            "found_fraction": share(depths.total("found"), depths.total()),
             "found_fraction_where_detectable": share(
-                depths.total("found_and_detectable"), detectable
+                depths.total("found", "detectable"), detectable
             ),
             "detection_depth_m": limit,
             "found_fraction_above_detection_depth": None
             if limit is None
-            else share(depths.total("found", depth=limit), depths.total("members", depth=limit)),
+            else share(depths.total("found", depth=limit), depths.total(depth=limit)),
             "found_depth_m": depths.deepest("found", DETECTABLE),
             "half_found_depth_m": depths.deepest("found", HALF),
         }
 
     def explain_empty(self) -> str:
         """Return in one sentence why no bottom was found: the commonest outcome and its share."""
-        wet = self._depths.total("members")
+        wet = self._depths.total()
         if wet == 0:
             return "no bottom found: no pixel looks at water. Check flight, seabed and water level"
         commonest = max(REASONS, key=lambda cause: self.outcomes[cause])

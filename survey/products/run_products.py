@@ -42,6 +42,7 @@ from terrain.seabed import Seabed
 
 FloatArray = NDArray[np.float64]
 ReadFrame = Callable[[int], FrameResult]
+POINTS_OF_A_TILE = 400_000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -216,6 +217,7 @@ def _parts(
             points=look.points,
             lattice=look.raster(cell_size=settings.grid),
             margin=max(settings.thinning, settings.reach) + settings.grid,
+            most=POINTS_OF_A_TILE,
         )
     )
     needed = [[frames[number].index for number in tile.frames] for tile in tiles]

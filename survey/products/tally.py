@@ -97,12 +97,12 @@ class DepthBins:
     >>> bins.add(np.array([1.1, 1.2, 1.6, 1.3]), found=np.array([True, True, False, True]))
     >>> bins.deepest("found", 0.5)
     1.5
-    >>> bins.total("found", depth=1.5), bins.total("members")
+    >>> bins.total("found", depth=1.5), bins.total()
     (3, 4)
     """
 
     def __init__(self, kinds: Sequence[str]) -> None:
-        self._counts = {name: np.zeros(0, np.int64) for name in ("members", *kinds)}
+        self._kinds, self._counts = tuple(kinds), np.zeros((0, 1 << len(kinds)), np.int64)
         self.least, self.greatest = np.inf, -np.inf
 
     def add(self, depth: FloatArray, **kinds: NDArray[np.bool_]) -> None:
@@ -111,24 +111,32 @@ class DepthBins:
             return
         self.least = min(self.least, float(depth.min()))
         self.greatest = max(self.greatest, float(depth.max()))
-        bins = np.floor(depth / DEPTH_BIN).astype(np.intp)
-        for name, which in {"members": np.ones(depth.size, np.bool_), **kinds}.items():
-            size = max(self._counts[name].size, int(self.greatest / DEPTH_BIN) + 1)
-            counts = np.bincount(bins[which], minlength=size)
-            counts[: self._counts[name].size] += self._counts[name]
-            self._counts[name] = counts
+        number = np.floor(depth / DEPTH_BIN).astype(np.intp)
+        for name in self._kinds:
+            number = 2 * number + kinds[name]
+        bins = max(len(self._counts), int(self.greatest / DEPTH_BIN) + 1)
+        counts = np.bincount(number, minlength=bins << len(self._kinds)).reshape(bins, -1)
+        counts[: len(self._counts)] += self._counts
+        self._counts = counts
+
+    def _of(self, *kinds: str) -> NDArray[np.int64]:
+        """Return how many in each bin are of all the kinds."""
+        count, places = len(self._kinds), [self._kinds.index(kind) for kind in kinds]
+        wanted = sum(1 << (count - 1 - place) for place in places)
+        combinations = np.arange(1 << count)
+        return np.asarray(self._counts[:, combinations & wanted == wanted].sum(axis=1))
 
     def deepest(self, kind: str, share: float) -> float | None:
         """Return the deep edge of the deepest bin so filled with a kind, or the deepest place [m].
 
         None where no bin is.
         """
-        members = self._counts["members"]
-        good = np.flatnonzero((members > 0) & (self._counts[kind] >= share * members))
+        members = self._of()
+        good = np.flatnonzero((members > 0) & (self._of(kind) >= share * members))
         return float(min((good[-1] + 1) * DEPTH_BIN, self.greatest)) if good.size else None
 
-    def total(self, kind: str, *, depth: float = np.inf) -> int:
-        """Return how many of a kind lie in bins down to a depth [m]."""
-        edges = np.arange(self._counts[kind].size) * DEPTH_BIN
+    def total(self, *kinds: str, depth: float = np.inf) -> int:
+        """Return how many members of all these kinds lie in the bins down to a depth [m]."""
+        edges = np.arange(len(self._counts)) * DEPTH_BIN
         above = (edges < depth) | ((edges == depth) & (depth == self.greatest))
-        return int(self._counts[kind][above].sum())
+        return int(self._of(*kinds)[above].sum())

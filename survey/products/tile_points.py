@@ -76,10 +76,14 @@ def _in_reach(
     places = places + map_frame.origin[:2]
     near = tile.reaches(places)
     bottom, surface = (
-        cloud.select(tile.reaches(map_frame.to_map(cloud.position)))
+        _some(cloud, tile.reaches(map_frame.to_map(cloud.position)))
         for cloud in (result.bottom, result.surface)
     )
     return bottom, surface, places[near], outcomes[near]
+
+
+def _some(cloud: PointCloud, which: NDArray[np.bool_]) -> PointCloud:
+    return cloud if which.all() else cloud.select(which)
 
 
 def _thinned(tile: MapTile, cloud: PointCloud, thinning: float, map_frame: MapFrame) -> PointCloud:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -46,6 +47,21 @@ def test_a_frame_reads_back_as_it_was_written(tmp_path: Path, result: FrameResul
             assert found.dtype == column.dtype
             assert np.array_equal(found, column)
     assert np.array_equal(again.record.outcome, result.record.outcome)
+
+
+def test_a_frame_over_land_has_no_surface(tmp_path: Path, result: FrameResult) -> None:
+    dry = replace(result, surface=result.surface.select(slice(0, 0)))
+    write_frame(tmp_path / "000003.npz", dry)
+    surface = read_frame(tmp_path / "000003.npz").surface
+    assert (len(surface), surface.position.shape, surface.frame.dtype) == (0, (0, 3), np.uint32)
+
+
+def test_anybody_reads_a_frame_with_numpy(tmp_path: Path, result: FrameResult) -> None:
+    write_frame(tmp_path / "000003.npz", result)
+    with np.load(tmp_path / "000003.npz") as arrays:
+        assert sorted(arrays) == ["bottom", "pixel", "surface"]
+        assert np.array_equal(arrays["bottom"]["position"], result.bottom.position)
+        assert np.array_equal(arrays["pixel"]["outcome"], result.record.outcome)
 
 
 @pytest.mark.parametrize("damage", ["empty", "short", "flipped", "other", "no column"])
