@@ -88,12 +88,26 @@ def _of_pixels(noise: NoiseModel, which: NDArray[np.bool_]) -> NoiseModel:
 
 
 def _without_surface(noise: NoiseModel, surface: FloatArray) -> NoiseModel:
-    """Return the model of water whose surface sends nothing back, with its thresholds."""
+    """Return the model of water whose surface sends nothing back, with its thresholds.
+
+    What else has raised the thresholds, such as the doubt of a flash, stays.
+    """
     light = np.maximum(noise.bottomless_light - surface, noise.steady_light)
+    mean, dark = noise.detector.mean(light), _threshold(noise, light)
+    raised = np.maximum(_threshold(noise, noise.bottomless_light) - dark, 0.0)
+    return replace(
+        noise,
+        bottomless_light=light,
+        bottomless=mean,
+        bottom_threshold=noise.bottom_threshold - raised,
+    )
+
+
+def _threshold(noise: NoiseModel, light: FloatArray) -> FloatArray:
+    """Return n_L over a light as the model sets it."""
     bins = noise.detector.scatter(light, noise.detector.mean(light))
     mean = gate_sums(bins.mean, noise.gate_bins) + noise.allowance
-    threshold = gate_scatter(bins, mean, noise.gate_bins).threshold(float(norm.sf(noise.deviate)))
-    return replace(noise, bottomless_light=light, bottomless=bins.mean, bottom_threshold=threshold)
+    return gate_scatter(bins, mean, noise.gate_bins).threshold(float(norm.sf(noise.deviate)))
 
 
 def _clearer(water: WaterColumn, depth: FloatArray, path: FloatArray) -> FloatArray:

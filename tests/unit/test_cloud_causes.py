@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -60,9 +61,10 @@ def targets(depth: Any, reflectance: Any) -> TrueTargets:
     )
 
 
-def causes(bottom: Any, surface: Any, **truth: Any) -> list[Outcome]:
+def causes(bottom: Any, surface: Any, doubt: float = 0.0, **truth: Any) -> list[Outcome]:
     """Return the causes of one row of pixels, all of them too weak."""
     noise = model(surface)
+    noise = replace(noise, bottom_threshold=noise.bottom_threshold + doubt)
     assert np.all(bottom_detection_probability(bottom=bottom, noise=noise) < 0.5)
     shape = bottom.shape[:2]
     found = weak_causes(
@@ -89,6 +91,12 @@ def test_a_bottom_within_the_glint_is_lost_in_it() -> None:
     dim = np.stack([pulse(45.0, 15.0), pulse(90.0, 4.0)])[None]
     glint = np.broadcast_to(pulse(40.0, 3000.0), dim.shape)
     assert causes(dim, glint) == [Outcome.GLINT, Outcome.TOO_DEEP]
+
+
+def test_a_threshold_raised_for_doubt_is_no_glint() -> None:
+    dim = pulse(80.0, 9.0)[None, None]
+    assert causes(dim, np.zeros(dim.shape), doubt=20.0) == [Outcome.TOO_DEEP]
+    assert causes(dim, pulse(10.0, 50.0)[None, None], doubt=20.0) == [Outcome.TOO_DEEP]
 
 
 def test_only_layers_make_water_too_turbid_and_only_above_the_bottom() -> None:
