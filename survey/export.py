@@ -5,15 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from datetime import datetime
 from functools import cached_property
 from pathlib import Path
 
 from survey.errors import UserError
+from survey.products.cells import CellGrid
 from survey.products.cog_file import write_bathymetry_cog
-from survey.products.grids import ElevationGrid, grid_elevation
-from survey.products.las_copy import copy_las, open_points, read_points
-from survey.products.las_file import read_laz
+from survey.products.grids import ElevationGrid, gridded
+from survey.products.las_copy import copy_las, read_points, solid_points
 from survey.products.mesh_files import write_bathymetry_glb
 from survey.products.mesh_formats import write_bathymetry_mesh
 from survey.products.ply_file import copy_ply
@@ -36,8 +35,6 @@ class FinishedRun:
     map_frame : MapFrame
     water_level : float
         [m].
-    start_utc : datetime
-        Start of the mission.
     cell_size : float, optional
         Side of the cells of grids and meshes [m]; without it those of the run's grid.
     """
@@ -45,7 +42,6 @@ class FinishedRun:
     folder: Path
     map_frame: MapFrame
     water_level: float
-    start_utc: datetime
     cell_size: float | None = None
 
     @classmethod
@@ -69,7 +65,6 @@ class FinishedRun:
             folder=folder,
             map_frame=components.map_frame(scenario),
             water_level=scenario.surface.water_level_m,
-            start_utc=scenario.mission.start_utc,
             cell_size=cell_size,
         )
 
@@ -83,10 +78,8 @@ class FinishedRun:
         """The gridded bathymetry."""
         if self.cell_size is None:
             return read_bathymetry_tif(self.folder / "bathymetry.tif")
-        source = self.folder / "bottom.laz"
-        open_points(source).close()
-        cloud = read_laz(source, self.map_frame, start_utc=self.start_utc)
-        return grid_elevation(cloud, self.map_frame, cell_size=self.cell_size)
+        on_map, tvu = solid_points(self.folder / "bottom.laz")
+        return gridded(on_map, CellGrid.covering(on_map, cell_size=self.cell_size), tvu)
 
 
 Exporter = Callable[[FinishedRun, Path, bool], Iterator[Path]]

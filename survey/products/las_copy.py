@@ -6,11 +6,16 @@ from copy import deepcopy
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
+from survey.products.grids import SOLID_CLASSES
 from survey.products.writing import ProductError, require_read_back, whole_file
 
 if TYPE_CHECKING:
     import laspy
 
+FloatArray = NDArray[np.float64]
 CHUNK = 1_000_000
 
 
@@ -48,6 +53,26 @@ def read_points(path: Path, *, standard_only: bool) -> laspy.LasData:
     with open_points(path) as reader:
         las = reader.read()
     return standard_points(las) if standard_only else las
+
+
+def solid_points(path: Path) -> tuple[FloatArray, FloatArray]:
+    """Read places (n, 3) on the map and vertical uncertainties (n,) of seabed, objects and land.
+
+    Raises
+    ------
+    ProductError
+        If the file is not whole, has no points or tells no uncertainty.
+    """
+    places, uncertain = [np.zeros((0, 3))], [np.zeros(0)]
+    with open_points(path) as reader:
+        if "total_tvu" not in reader.header.point_format.extra_dimension_names:
+            raise ProductError(f"{path}: no extra bytes 'total_tvu'. Use the run's own bottom.laz")
+        for points in reader.chunk_iterator(CHUNK):
+            solid = np.isin(points.classification, SOLID_CLASSES)
+            axes = (np.asarray(axis)[solid] for axis in (points.x, points.y, points.z))
+            places.append(np.stack(list(axes), axis=1))
+            uncertain.append(np.asarray(points.total_tvu, dtype=np.float64)[solid])
+    return np.concatenate(places), np.concatenate(uncertain)
 
 
 def copy_las(source: Path, path: Path, *, standard_only: bool) -> None:

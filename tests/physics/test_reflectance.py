@@ -34,6 +34,7 @@ def flown(water: str, depth: float, reflectance: float) -> Scenario:
     return Scenario.from_tables(tables, name="test.toml", folder=Path())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("water", "depth", "reflectance"), [("coastal", 8.0, 0.25), ("clear", 15.0, 0.05)]
 )

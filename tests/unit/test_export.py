@@ -37,7 +37,7 @@ def finished(small_survey: Any, tmp_path_factory: pytest.TempPathFactory) -> Fin
     grid = grid_elevation(small_survey.bottom, frame, cell_size=CELL)
     write_bathymetry_tif(folder / "bathymetry.tif", grid, frame)
     level = small_survey.water_level
-    return FinishedRun(folder=folder, map_frame=frame, water_level=level, start_utc=start)
+    return FinishedRun(folder=folder, map_frame=frame, water_level=level)
 
 
 Exporting = Callable[..., list[Path]]
@@ -198,7 +198,6 @@ def test_other_cells_are_gridded_anew(finished: FinishedRun, tmp_path: Path) -> 
         folder=finished.folder,
         map_frame=finished.map_frame,
         water_level=finished.water_level,
-        start_utc=finished.start_utc,
         cell_size=12.0,
     )
     (path,) = export_run(coarse, tmp_path, formats=["tif"])
@@ -232,7 +231,6 @@ def test_a_file_without_points_is_refused(finished: FinishedRun, tmp_path: Path)
         folder=empty,
         map_frame=finished.map_frame,
         water_level=0.0,
-        start_utc=finished.start_utc,
     )
     for name in ("las", "copc"):
         with pytest.raises(ProductError, match=r"bottom\.laz: no points in the file"):

@@ -89,7 +89,6 @@ def test_density_of_2_m_and_terrain_of_1_m(
         folder=delivered,
         map_frame=small_survey.map_frame,
         water_level=small_survey.water_level,
-        start_utc=small_survey.start_utc,
         cell_size=cell,
     )
     (path,) = export_run(run, tmp_path, formats=["tif"])
