@@ -53,11 +53,11 @@ class Logged:
         self._watcher.frame_done(index, seconds)
 
     def writing(self, total: int) -> None:
-        """Pass it on."""
+        """Tell it on."""
         self._watcher.writing(total)
 
     def written(self, steps: int) -> None:
-        """Pass it on."""
+        """Tell it on."""
         self._watcher.written(steps)
 
     def finished(self, summary: str) -> None:

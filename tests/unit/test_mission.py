@@ -51,8 +51,8 @@ class Log:
 
     def __init__(self) -> None:
         self.total, self.flown, self.summary = -1, set[int](), ""
-        self.steps, self.written_steps = 0, 0
         self.notices = list[str]()
+        self.steps, self.written_steps = 0, 0
 
     def started(self, total: int) -> None:
         self.total = total
