@@ -62,6 +62,7 @@ def settings(survey: Any) -> ProductSettings:
         trajectory_files=(),
         deviations=(0.0,) * 6,
         water=WaterColumn.uniform(water),
+        camera=Camera(rows=8, columns=16, pixel_tangent=0.032, long_side="along"),
     )
 
 
@@ -147,7 +148,7 @@ def test_no_bottom_is_an_error_before_anything_is_written(
                 classification=np.full(len(result.bottom), PointClass.NO_BOTTOM_FOUND, np.uint8),
             ),
             record=replace(
-                result.record, outcome=np.full_like(result.record.outcome, Outcome.TOO_WEAK)
+                result.record, outcome=np.full_like(result.record.outcome, Outcome.TOO_DEEP)
             ),
         )
         for number, result in results.items()
