@@ -19,6 +19,7 @@ from survey.products.frame_file import FrameResult
 from survey.products.ply_file import read_ply
 from survey.products.run_products import ProductSettings, write_products
 from survey.products.writing import ProductError
+from survey.sensor.camera import Camera
 
 
 @dataclass
