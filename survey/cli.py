@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 import typer
 from typer.core import TyperGroup
 
-from survey import waveforms_console
+from survey import export_console, waveforms_console
 from survey.exit_status import BAD_INPUT, FILE_MISSING, OUR_FAULT, TRACEBACK_VARIABLE, explain
 
 Settings = Annotated[
@@ -252,6 +252,7 @@ def view(
 
 
 app.command()(waveforms_console.waveforms)
+app.command()(export_console.export)
 
 
 @app.command()

@@ -80,24 +80,24 @@ def observe(mission: Mission, frame: Frame) -> Observation:
         group_index=engine.water.group_index,
     )
     on_surface, on_bottom = (
-        mission.budget.applied(cloud, frame=frame) for cloud in (on_surface, on_bottom)
+        mission.calibration.applied(mission.budget.applied(cloud, frame=frame), frame=frame)
+        for cloud in (on_surface, on_bottom)
     )
     record = pixel_record(
         waveforms=waveforms,
         saturated=blind_at(blind=readings.blind, time=targets.time, noise=noise),
-        bottom=bottom,
         points=on_bottom,
         targets=targets,
         noise=noise,
         search=search,
-        group_index=engine.water.group_index,
+        water=engine.water,
     )
     raw = mission.raw_of(readings)
     return Observation(
         frame=frame,
         waveforms=waveforms,
         readings=readings,
-        noise=in_doubt,
+        noise=noise,
         first=first,
         bottom=bottom,
         targets=targets,

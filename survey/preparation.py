@@ -15,7 +15,9 @@ from survey.cloud.noise import NoiseModel
 from survey.cloud.posed_noise import PosedNoise
 from survey.cloud.ranging import surface_walk
 from survey.cloud.raw import RawReadings, raw_readings
+from survey.cloud.reflectance import Calibration
 from survey.cloud.uncertainty import Budget
+from survey.expected_light import coarse, expected_light
 from survey.flight.pose import Frame, Pose
 from survey.flight.trajectory import footprints, require_air
 from survey.optics.background import background_power
@@ -36,6 +38,8 @@ FloatArray = NDArray[np.float64]
 
 MODEL_FLASHES = 4
 FIRST_MODEL_FRAME = 1 << 31
+SHALLOWEST_CALIBRATED = 0.1  # [m]
+CALIBRATED_DEPTHS = 40
 RAW_STEPS = {"none": None, "sampled": 8, "all": 1}
 
 
@@ -57,6 +61,7 @@ class Mission:
     search: type[BottomSearch]
     posed_noise: PosedNoise
     budget: Budget
+    calibration: Calibration
     products: ProductSettings
     raw_step: int | None
 
@@ -114,6 +119,7 @@ def prepare(scenario: Scenario) -> Mission:
             group_index=water.group_index,
             pixel_tangent=camera.pixel_tangent,
         ),
+        calibration=_calibration(scenario, frames[0], surface),
         products=product_settings(scenario),
         raw_step=RAW_STEPS[scenario.processing.keep_waveforms],
     )
@@ -133,6 +139,7 @@ def product_settings(scenario: Scenario) -> ProductSettings:
         trajectory_files=scenario.navigation.trajectory_files,
         deviations=components.navigation(scenario).deviations,
         water=components.water(scenario),
+        camera=components.camera(scenario),
         order=scenario.mission.order,
         cubes=cubes(scenario),
     )
@@ -192,6 +199,18 @@ def noise_model(
         bin_start=receiver.gate_start,
         bin_width=receiver.bin_width,
     )
+
+
+def _calibration(scenario: Scenario, frame: Frame, sea: SeaSurface) -> Calibration:
+    """Return what makes reflectances of counts, by the water and the level that are expected."""
+    height = frame.measured.position[2] - sea.level - scenario.processing.water_level_error_m
+    light = expected_light(scenario, height=height, water=components.expected_water(scenario))
+    bottomless = light.column() + light.surface_echo()
+    steady = steady_light(scenario, components.background_radiance(scenario))
+    noise = noise_model(coarse(scenario), steady, bottomless, np.zeros_like(bottomless))
+    deepest = max(light.gate_depth, 2.0 * SHALLOWEST_CALIBRATED)
+    depths = np.geomspace(SHALLOWEST_CALIBRATED, deepest, CALIBRATED_DEPTHS)
+    return Calibration.expected(light, noise, depths=depths.tolist())
 
 
 def _seen_pulse(scenario: Scenario) -> float:

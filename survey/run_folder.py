@@ -27,8 +27,8 @@ from survey.scenario.scenario import Scenario
 JOURNAL = "journal.jsonl"
 PRODUCTS = (
     *("bottom.*", "water_surface.*", "bathymetry.*", "trajectory.*", "trajectory_*"),
-    *("coverage.geojson", "failures.geojson", "strip_differences.tif", "metrics.json"),
-    *("performance.json", "report.html"),
+    *("coverage.geojson", "lines.geojson", "failures.geojson", "strip_differences.tif"),
+    *("metrics.json", "performance.json", "report.html"),
 )
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import PointCloud
+from survey.cloud.points import PointClass, PointCloud
 from survey.products.ply_file import read_ply
 from survey.products.trajectory_file import read_trajectory_csv
 from terrain.map_frame import MapFrame
@@ -78,7 +78,7 @@ def read_run(folder: Path) -> FlownSurvey:
         description=scenario["mission"].get("description", ""),
         water_level=float(scenario["surface"]["water_level_m"]),
         bottom=bottom,
-        surface=surface,
+        surface=surface.select(surface.classification == PointClass.WATER_SURFACE),
         positions=map_frame.to_local(np.stack(on_map, axis=1)),
         headings=np.radians(trajectory["true_heading_deg"]),
         frame=trajectory["frame"].astype(np.intp),

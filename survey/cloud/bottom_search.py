@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol, Self
 
 import numpy as np
@@ -31,6 +31,9 @@ class BottomSearch(Protocol):
 
     def probability(self, bottom: FloatArray) -> FloatArray:
         """Probability (rows, columns) that the light of a true bottom is found."""
+
+    def without(self, light: FloatArray) -> Self:
+        """Return the search over water that does not send back a part of its light."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,6 +65,10 @@ class ThresholdSearch:
     def probability(self, bottom: FloatArray) -> FloatArray:
         """Probability that the true echo's gate fires, equation (11)."""
         return bottom_detection_probability(bottom=bottom, noise=self.noise)
+
+    def without(self, light: FloatArray) -> ThresholdSearch:
+        """Return the search with the thresholds of the light that is left."""
+        return replace(self, noise=self.noise.without(light))
 
 
 SEARCHES: Mapping[str, type[BottomSearch]] = {

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from survey.cloud.echo import Echo
 from survey.cloud.georeference import WaterPath, bend_at_surface, place_in_air, place_in_water
+from survey.cloud.lone_echoes import stands_alone, stands_high
 from survey.cloud.points import PointClass, PointCloud
 from survey.cloud.truth import TrueTargets
 from survey.flight.pose import Frame
@@ -75,7 +76,7 @@ def find_water(
     Water reaches 0.75 m above and below its level, or as far as the waves do where that is more:
     1.25 of their significant height. The level is the median elevation of the first echoes that
     near to the expected level, or that level itself where there are fewer than 20. What lies higher
-    is land; hence a beach that waves could top is taken for water.
+    is land unless it stands alone; hence a beach that waves could top is taken for water.
 
     Parameters
     ----------
@@ -98,6 +99,7 @@ def find_water(
     enough = near.sum() >= ENOUGH_SURFACE_ECHOES
     level = float(np.median(elevation[near])) if enough else expected_level
     land = elevation > level + reach
+    land &= ~stands_alone(elevation, land)
     return WaterLine(
         level=level,
         reach=reach,
@@ -113,21 +115,24 @@ def find_water(
 def surface_points(
     *, line: WaterLine, first: Echo, frame: Frame, targets: TrueTargets
 ) -> PointCloud:
-    """Return the first echoes on the water: class 41."""
-    on_water = first.found & ~line.land
-    on_water &= np.abs(line.first[..., 2] - line.level) <= line.reach
+    """Return the first echoes on the water, class 41, and those alone in the air, class 18."""
+    above_land = first.found & ~line.land
+    on_water = above_land & (np.abs(line.first[..., 2] - line.level) <= line.reach)
+    in_air = above_land & (line.first[..., 2] > line.level + line.reach)
     wet = targets.classification != PointClass.GROUND
     return _cloud(
-        which=on_water,
+        which=on_water | in_air,
+        line=line,
         frame=frame,
         position=line.first,
         uncorrected=line.first,
         truth=targets.surface,
-        classification=np.full(on_water.shape, PointClass.WATER_SURFACE),
+        classification=np.where(in_air, PointClass.HIGH_NOISE, PointClass.WATER_SURFACE),
         true_classification=np.where(wet, PointClass.WATER_SURFACE, PointClass.GROUND),
         substrate=np.where(wet, UNLABELLED, targets.substrate),
         true_elevation=targets.surface[..., 2],
         targets=targets,
+        reflectance=np.where(wet, np.nan, targets.reflectance),
         water_path=np.zeros(on_water.shape),
         depth=np.zeros(on_water.shape),
         echo=first,
@@ -145,19 +150,30 @@ def bottom_points(
     seabed: Seabed,
     group_index: float,
 ) -> PointCloud:
-    """Return one point a pixel: bottom (40), object (43), land (2), or none found (45)."""
+    """Return one point a pixel: bottom (40), object (43), land (2), or none found (45).
+
+    A bottom that stands alone is noise, high (18) or low (7), and keeps its place.
+    """
     found = bottom.found
     corrected = place_in_water(path=line.path, time=bottom.time, group_index=group_index)
     straight = place_in_air(position=frame.measured.position, rays=rays, time=bottom.time)
     on_land, in_water = line.land[..., None], found[..., None]
     position = np.where(on_land, line.first, np.where(in_water, corrected, line.path.entry))
+    elevation = corrected[..., 2]
+    alone = stands_alone(elevation, found)
+    rules = (
+        (line.land, PointClass.GROUND),
+        (alone & stands_high(elevation, found), PointClass.HIGH_NOISE),
+        (alone, PointClass.LOW_NOISE),
+        (_stands_out(elevation, found & ~alone), PointClass.SUBMERGED_OBJECT),
+        (found, PointClass.BATHYMETRIC),
+    )
     classification = np.select(
-        [line.land, found & _stands_out(corrected[..., 2], found), found],
-        [PointClass.GROUND, PointClass.SUBMERGED_OBJECT, PointClass.BATHYMETRIC],
-        PointClass.NO_BOTTOM_FOUND,
+        [rule for rule, _ in rules], [kind for _, kind in rules], PointClass.NO_BOTTOM_FOUND
     )
     return _cloud(
         which=np.ones(found.shape, np.bool_),
+        line=line,
         frame=frame,
         position=position,
         uncorrected=np.where(on_land, line.first, np.where(in_water, straight, position)),
@@ -169,6 +185,7 @@ def bottom_points(
             position[..., 0].ravel(), position[..., 1].ravel()
         ).reshape(found.shape),
         targets=targets,
+        reflectance=targets.reflectance,
         water_path=targets.water_path,
         depth=np.where(found, line.level - position[..., 2], 0.0),
         echo=Echo(
@@ -196,6 +213,7 @@ def _stands_out(elevation: FloatArray, found: BoolArray) -> BoolArray:
 def _cloud(
     *,
     which: BoolArray,
+    line: WaterLine,
     frame: Frame,
     position: FloatArray,
     uncorrected: FloatArray,
@@ -205,13 +223,15 @@ def _cloud(
     substrate: NDArray[np.int64] | NDArray[np.uint8],
     true_elevation: FloatArray,
     targets: TrueTargets,
+    reflectance: FloatArray,
     water_path: FloatArray,
     depth: FloatArray,
     echo: Echo,
 ) -> PointCloud:
     """Return the chosen pixels of one frame as points, in the order of rows and columns.
 
-    Without uncertainties: those come from `survey.cloud.uncertainty`.
+    Without uncertainties and measured reflectance: those come from `survey.cloud.uncertainty` and
+    `survey.cloud.reflectance`.
     """
     row, column = np.nonzero(which)
     count = len(row)
@@ -228,6 +248,9 @@ def _cloud(
         water_path=water_path[which].astype(np.float32),
         tvu=np.full(count, np.nan, np.float32),
         thu=np.full(count, np.nan, np.float32),
+        surface_elevation=np.where(line.land, np.nan, line.path.entry[..., 2])[which],
+        reflectance=np.full(count, np.nan, np.float32),
+        true_reflectance=reflectance[which].astype(np.float32),
         time=frame.time + np.nan_to_num(echo.time[which]),
         depth=depth[which],
         counts=np.nan_to_num(echo.counts[which]).astype(np.float32),

@@ -14,7 +14,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from math import pi, sqrt
 
@@ -199,6 +199,16 @@ class MatchedSearch:
             best = together.argmax(axis=-1)[..., None]
             np.maximum(result, np.take_along_axis(fires, best, -1)[..., 0], out=result)
         return np.where(self.late == NONE, 0.0, result)
+
+    def without(self, light: FloatArray) -> MatchedSearch:
+        """Return the search over water that does not send back a part of its light."""
+        noise = self.noise.without(light)
+        return replace(
+            self,
+            noise=noise,
+            expected=_filtered(noise.bottomless, self.taps),
+            variance=_filtered(noise.bins.variance, self.taps**2, self.step),
+        )
 
     @cached_property
     def _expected_by_step(self) -> Singles:

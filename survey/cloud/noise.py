@@ -177,6 +177,30 @@ class NoiseModel:
             deviate=deviate,
         )
 
+    def without(self, light: FloatArray) -> NoiseModel:
+        """Return the model of water that does not send back a part of its light.
+
+        ``light`` (rows, columns, bins) are its photo-electrons. What else has raised the
+        thresholds, such as the doubt of a flash, stays.
+        """
+        left = np.maximum(self.bottomless_light - light, self.steady_light)
+        bins = self.detector.scatter(left, self.detector.mean(left))
+        fallen = self._threshold(self.bins) - self._threshold(bins)
+        return replace(
+            self,
+            bottomless_light=left,
+            bottomless=bins.mean,
+            bins=bins,
+            gate=gate_scatter(bins, gate_sums(bins.mean, self.gate_bins), self.gate_bins),
+            bottom_threshold=self.bottom_threshold - np.maximum(fallen, 0.0),
+        )
+
+    def _threshold(self, bins: Scatter) -> FloatArray:
+        """Return n_L over such readings, without the doubt of a flash."""
+        mean = gate_sums(bins.mean, self.gate_bins) + self.allowance
+        gate = gate_scatter(bins, mean, self.gate_bins)
+        return gate.threshold(self.false_alarm_rate / bins.mean.shape[-1])
+
     def of_flash(self, variance: NDArray[np.floating]) -> NoiseModel:
         """Return the model with the doubt of a flash whose light without a bottom errs so.
 

@@ -15,23 +15,37 @@ class PointClass(IntEnum):
     """LAS 1.4 classes in use (ASPRS topo-bathy profile)."""
 
     GROUND = 2
+    LOW_NOISE = 7
+    HIGH_NOISE = 18
     BATHYMETRIC = 40
     WATER_SURFACE = 41
+    DERIVED_SURFACE = 42
     SUBMERGED_OBJECT = 43
     NO_BOTTOM_FOUND = 45
 
 
+NOISE_CLASSES = (PointClass.LOW_NOISE, PointClass.HIGH_NOISE)
+
+
 class Outcome(IntEnum):
-    """What became of the bottom in one pixel of one frame."""
+    """What became of the bottom in one pixel of one frame, see `survey.cloud.truth.outcomes`.
+
+    The causes of weak echoes are those of `survey.cloud.causes`. NOISE is a bottom that was
+    found, true or false, and sorted out because it stood alone.
+    """
 
     FOUND = 0
     DRY = 1
     FALSE_BOTTOM = 2
-    TOO_WEAK = 3
+    TOO_DEEP = 3
     MERGED_WITH_SURFACE = 4
     OUTSIDE_GATE = 5
     SATURATED = 6
     CHANCE = 7
+    LOW_REFLECTANCE = 8
+    TOO_TURBID = 9
+    GLINT = 10
+    NOISE = 11
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,6 +76,13 @@ class PointCloud:
     tvu, thu : array (n,)
         Total vertical and horizontal uncertainty, 95 % [m], see `survey.cloud.uncertainty`; nan
         where no echo was placed.
+    surface_elevation : array (n,)
+        Of the water where the point's ray was taken to enter it [m, local]; nan on land.
+    reflectance : array (n,)
+        Of a diffuse target there that would send back the counts, see `survey.cloud.reflectance`
+        [1]; nan where there is no echo.
+    true_reflectance : array (n,)
+        Of the seabed or land that the ray of the pixel centre truly meets [1]; nan for water.
     time : array (n,)
         Seconds since the start of the mission [s].
     depth : array (n,)
@@ -86,6 +107,9 @@ class PointCloud:
     water_path: NDArray[np.float32]
     tvu: NDArray[np.float32]
     thu: NDArray[np.float32]
+    surface_elevation: NDArray[np.float64]
+    reflectance: NDArray[np.float32]
+    true_reflectance: NDArray[np.float32]
     time: NDArray[np.float64]
     depth: NDArray[np.float64]
     counts: NDArray[np.float32]

@@ -6,27 +6,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.bottom_search import BottomSearch
-from survey.cloud.echo import Echo
+from survey.cloud.causes import weak_causes
 from survey.cloud.georeference import depth_of
 from survey.cloud.noise import NoiseModel, gate_sums
-from survey.cloud.points import PixelRecord, PointCloud
+from survey.cloud.points import NOISE_CLASSES, PixelRecord, PointClass, PointCloud
 from survey.cloud.ranging import GUARD_GATES
 from survey.cloud.truth import TrueTargets, outcomes
+from survey.optics.water import WaterColumn
 from survey.transport.waveforms import Waveforms
 
 FloatArray = NDArray[np.float64]
+BOTTOM_CLASSES = (PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT)
 
 
 def pixel_record(
     *,
     waveforms: Waveforms,
     saturated: NDArray[np.bool_],
-    bottom: Echo,
     points: PointCloud,
     targets: TrueTargets,
     noise: NoiseModel,
     search: BottomSearch,
-    group_index: float,
+    water: WaterColumn,
 ) -> PixelRecord:
     """Return what each pixel could have seen, and what became of it.
 
@@ -36,8 +37,6 @@ def pixel_record(
         Expected photo-electrons, the bottom's among them.
     saturated : array (rows, columns)
         Pixels that were blind when the bottom's light came.
-    bottom : Echo
-        The bottom echoes that were found.
     points : PointCloud
         The frame's bottom points, one a pixel in the order of rows and columns.
     targets : TrueTargets
@@ -46,8 +45,8 @@ def pixel_record(
         Its gates.
     search : BottomSearch
         How the bottom was looked for.
-    group_index : float
-        Of the water [1].
+    water : WaterColumn
+        The true one.
     """
     expected = waveforms.origin("bottom")
     probability = search.probability(expected)
@@ -55,21 +54,31 @@ def pixel_record(
         expected, np.sqrt(waveforms.variance[2], dtype=np.float64), noise.gate_bins
     )
     error = (points.position[:, 2] - points.true_elevation).reshape(probability.shape)
+    classes = points.classification.reshape(probability.shape)
     width = noise.bin_width
+    outcome = outcomes(
+        targets=targets,
+        error=error,
+        found=np.isin(classes, BOTTOM_CLASSES),
+        noise=np.isin(classes, NOISE_CLASSES),
+        saturated=saturated,
+        probability=probability,
+        gate=(noise.bin_start, noise.bin_start + expected.shape[-1] * width),
+        shallowest=depth_of(
+            time=GUARD_GATES * noise.gate_bins * width, group_index=water.group_index
+        ),
+    )
     return PixelRecord(
         true_position=targets.position,
         true_depth=targets.depth,
         detection_probability=probability,
-        outcome=outcomes(
+        outcome=weak_causes(
+            outcome=outcome,
+            bottom=expected,
+            surface=waveforms.origin("surface"),
             targets=targets,
-            error=error,
-            found=bottom.found,
-            saturated=saturated,
-            probability=probability,
-            gate=(noise.bin_start, noise.bin_start + expected.shape[-1] * width),
-            shallowest=depth_of(
-                time=GUARD_GATES * noise.gate_bins * width, group_index=group_index
-            ),
+            water=water,
+            search=search,
         ),
         bottom_counts=counts,
         monte_carlo_relative_error=np.divide(

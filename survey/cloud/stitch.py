@@ -7,15 +7,15 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import PointClass, PointCloud
+from survey.cloud.points import NOISE_CLASSES, PointClass, PointCloud
 
 
 def stitched(clouds: Sequence[PointCloud], *, cell_size: float) -> PointCloud:
     """Return the points of all frames, the best one in every cell of the map.
 
     Cells are squares aligned with the map. Where several points fall into one, a found echo wins
-    over "no bottom found" (45), then the higher signal-to-noise ratio, then the earlier pixel.
-    The result is in the order of frame, row and column.
+    over "no bottom found" (45) and that over noise (7, 18), then the higher signal-to-noise ratio,
+    then the earlier pixel. The result is in the order of frame, row and column.
 
     Parameters
     ----------
@@ -35,7 +35,8 @@ def kept_points(cloud: PointCloud, *, cell_size: float) -> NDArray[np.intp]:
         return order
     east, north = np.floor(cloud.position[order, :2] / cell_size).astype(np.int64).T
     cell = (east - east.min()) * (np.ptp(north) + 1) + north - north.min()
-    missing = cloud.classification[order] == PointClass.NO_BOTTOM_FOUND
+    kind = cloud.classification[order]
+    missing = (kind == PointClass.NO_BOTTOM_FOUND) + 2 * np.isin(kind, NOISE_CLASSES)
     best_first = np.lexsort((-cloud.snr[order], missing, cell))
     first = np.ones(len(order), np.bool_)
     first[1:] = np.diff(cell[best_first]) != 0

@@ -46,6 +46,8 @@ class TrueTargets:
         Of `position` under mean level, negative on land [m].
     classification : array (rows, columns)
         `PointClass`: ground, bathymetric point or submerged object.
+    reflectance : array (rows, columns)
+        Of seabed or land there [1]; nan where there is none.
     substrate : array (rows, columns)
         Code of what seabed or land is made of there; 0 where there is none.
     """
@@ -57,6 +59,7 @@ class TrueTargets:
     water_path: FloatArray
     depth: FloatArray
     classification: NDArray[np.uint8]
+    reflectance: FloatArray
     substrate: NDArray[np.uint8]
 
 
@@ -94,6 +97,7 @@ def true_targets(
         water_path=np.where(dry, 0.0, np.where(face >= 0, length, np.nan)),
         depth=surface.level - found[..., 2],
         classification=np.where(dry, PointClass.GROUND, wet_class).astype(np.uint8),
+        reflectance=np.where(met >= 0, seabed.reflectance[np.maximum(met, 0)], np.nan),
         substrate=substrate.astype(np.uint8),
     )
 
@@ -117,6 +121,7 @@ def outcomes(
     targets: TrueTargets,
     error: FloatArray,
     found: BoolArray,
+    noise: BoolArray,
     saturated: BoolArray,
     probability: FloatArray,
     gate: tuple[float, float],
@@ -129,8 +134,9 @@ def outcomes(
     targets : TrueTargets
     error : array (rows, columns)
         Measured less true elevation of the bottom point [m].
-    found, saturated : array (rows, columns)
-        Whether a bottom was reported, and whether the detector was blind when it should have been.
+    found, noise, saturated : array (rows, columns)
+        Whether a bottom was reported, whether one was found and sorted out, and whether the
+        detector was blind when it should have been.
     probability : array (rows, columns)
         Probability that the true echo fires.
     gate : (float, float)
@@ -144,10 +150,11 @@ def outcomes(
         (targets.classification == PointClass.GROUND, Outcome.DRY),
         (found & wrong, Outcome.FALSE_BOTTOM),
         (found, Outcome.FOUND),
+        (noise, Outcome.NOISE),
         (saturated, Outcome.SATURATED),
         (~inside, Outcome.OUTSIDE_GATE),
         (targets.depth < shallowest, Outcome.MERGED_WITH_SURFACE),
-        (probability < 0.5, Outcome.TOO_WEAK),
+        (probability < 0.5, Outcome.TOO_DEEP),
     )
     return np.select(
         [rule for rule, _ in rules], [int(outcome) for _, outcome in rules], int(Outcome.CHANCE)

@@ -159,7 +159,8 @@ def _on_map(prefix: str, local: FloatArray, mission: Mission) -> Values:
 
 
 def _light(seen: Observation) -> Values:
-    light, noise = seen.waveforms, seen.noise
+    light = seen.waveforms
+    noise = seen.noise.of_flash(light.variance[:2].sum(axis=0))
     return {
         **{f"expected_{name}": light.origin(name) for name in ("surface", "column", "bottom")},
         "expected_background": noise.steady_light,

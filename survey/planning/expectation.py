@@ -4,23 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from math import ceil, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
+from survey.expected_light import coarse, expected_light
 from survey.planning.depth_limit import DepthLimit, depth_limit
-from survey.planning.expected_light import ExpectedLight
 from survey.planning.run_costs import column_error
-from survey.planning.water_response import water_response
 from survey.preparation import noise_model, steady_light
 from survey.scenario import components
 from survey.scenario.scenario import Scenario
 from terrain.seabed import Seabed
 
 FloatArray = NDArray[np.float64]
-
-MOST_PIXELS = 32
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,7 +60,7 @@ def expectation(scenario: Scenario, *, seabed: Seabed, height: float) -> Expecta
     height : float
         Of the sensor above the water [m].
     """
-    water, coarse = components.water(scenario), _coarse(scenario)
+    water, few = components.water(scenario), coarse(scenario)
     light = expected_light(scenario, height=height)
     reflectance = float(np.median(seabed.reflectance[~seabed.is_object]))
     column = light.column()
@@ -82,7 +78,7 @@ def expectation(scenario: Scenario, *, seabed: Seabed, height: float) -> Expecta
 
     def limit(radiance: float, *, of_run: bool) -> DepthLimit:
         variance = error**2 if of_run else np.zeros_like(error)
-        noise = noise_model(coarse, steady_light(scenario, radiance), bottomless, variance)
+        noise = noise_model(few, steady_light(scenario, radiance), bottomless, variance)
         return depth_limit(bottom=bottom, noise=noise, gate_depth=light.gate_depth)
 
     day, night = _radiances(scenario)
@@ -97,47 +93,9 @@ def expectation(scenario: Scenario, *, seabed: Seabed, height: float) -> Expecta
     )
 
 
-def expected_light(scenario: Scenario, *, height: float) -> ExpectedLight:
-    """Return what a few pixels, spread over the field of view, may expect of a flash.
-
-    Parameters
-    ----------
-    scenario : Scenario
-    height : float
-        Of the sensor above the water [m].
-    """
-    receiver, water = components.receiver(scenario), components.water(scenario)
-    efficiency = components.detector(scenario).photo_electrons_per_photon
-    return ExpectedLight(
-        height=height,
-        laser=components.laser(scenario),
-        receiver=receiver,
-        camera=components.camera(_coarse(scenario)),
-        pixel_solid_angle=components.camera(scenario).pixel_tangent ** 2,
-        photo_electrons_per_photon=receiver.optics_transmission * efficiency,
-        surface=components.sea_surface(scenario),
-        water=water_response(water, scenario.laser.illumination),
-        refractive_index=water.refractive_index,
-        group_index=water.group_index,
-    )
-
-
 def _radiances(scenario: Scenario) -> tuple[float, float]:
     """Return the background by day and by night [W / (m2 m sr)]."""
     own = components.background_radiance(scenario)
     if scenario.sun.day:
         return own, components.NIGHT_RADIANCE_W_M2_UM_SR / components.MICRO
     return components.sky(scenario).radiance(), own
-
-
-def _coarse(scenario: Scenario) -> Scenario:
-    """Return the scenario with fewer pixels in nearly the same field of view, for speed."""
-    given = scenario.camera
-    step = ceil(sqrt(given.rows * given.columns / MOST_PIXELS))
-    step = min(step, given.rows, given.columns)
-    changes = {
-        "camera.rows": given.rows // step,
-        "camera.columns": given.columns // step,
-        "camera.pixel_footprint_m": given.pixel_footprint_m * step,
-    }
-    return scenario.replace(**changes)

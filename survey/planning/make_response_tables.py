@@ -1,4 +1,4 @@
-"""Make `data/response_tables.json` anew: ``python -m survey.planning.make_response_tables``.
+"""Make the tables of survey/optics/data anew: ``python -m survey.planning.make_response_tables``.
 
 The walks are those of `survey.transport.response`; here one set of them serves all depths.
 """
@@ -139,5 +139,5 @@ def _lines(value: Any, margin: str) -> str:
 
 
 if __name__ == "__main__":
-    place = resources.files("survey.planning") / "data" / "response_tables.json"
+    place = resources.files("survey.optics") / "data" / "response_tables.json"
     Path(str(place)).write_text(as_text(tables()), encoding="utf-8")

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from survey.optics.response_table import Illumination
 from survey.optics.water import WaterColumn
-from survey.planning.response_table import Illumination
-from survey.planning.water_response import named_depth, named_shares
+from survey.optics.water_response import named_depth, named_shares
 
 FloatArray = NDArray[np.float64]
 

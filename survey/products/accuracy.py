@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import PointClass, PointCloud
+from survey.cloud.points import NOISE_CLASSES, PointClass, PointCloud
 from survey.cloud.truth import FALSE_BOTTOM_ERROR
 from survey.optics.water import WaterColumn
 from survey.products.cells import CellGrid, inside_ring
@@ -44,7 +44,7 @@ class Accuracy:
 
     def __init__(self, *, water_level: float, survey_area: FloatArray, cell_size: float) -> None:
         self.bottom, self.surface, self.ground = (PointErrors() for _ in range(3))
-        self.false_bottoms = self.no_bottom_found = 0
+        self.false_bottoms = self.no_bottom_found = self.noise = 0
         self.depths = StitchedDepths(water_level=water_level)
         self._held = HeldCells(survey_area=survey_area, cell_size=cell_size)
         self._water_level = water_level
@@ -57,6 +57,8 @@ class Accuracy:
         self.surface.add(surface.select(surface.classification == PointClass.WATER_SURFACE))
         self.false_bottoms += int((np.abs(elevation_errors(solid)) > FALSE_BOTTOM_ERROR).sum())
         self.no_bottom_found += int((bottom.classification == PointClass.NO_BOTTOM_FOUND).sum())
+        for cloud in (bottom, surface):
+            self.noise += int(np.isin(cloud.classification, NOISE_CLASSES).sum())
         self.depths.add(bottom)
         self._held.add(solid)
 
@@ -72,6 +74,7 @@ class Accuracy:
         frames                            frames flown
         points_bottom, _surface, _ground  points of classes 40 and 43; 41; 2
         points_no_bottom_found            points of class 45
+        points_noise                      of classes 7 and 18, in both clouds; in no other figure
         bias_m, rmse_m, p95_abs_error_m   mean, root mean square, 95th percentile of the absolute
                                           errors of bottom points, false bottoms included
         bias_standard_error_m             from the scatter of the frames' mean errors, weighted
@@ -102,6 +105,7 @@ class Accuracy:
             "points_surface": self.surface.points,
             "points_ground": self.ground.points,
             "points_no_bottom_found": self.no_bottom_found,
+            "points_noise": self.noise,
             **self.bottom.metrics(""),
             **self.surface.metrics("surface_"),
             **self.ground.metrics("ground_"),

@@ -21,7 +21,10 @@ from terrain.nearness import count_near
 FloatArray = NDArray[np.float64]
 OUTSIDE_AREA = -2
 GAP = -1
-GAP_CAUSE = "gap between frames"
+SHADOW = -3
+CAUSES = {GAP: "gap between frames", SHADOW: "shadow"}
+"""Of cells that no pixel looked at."""
+
 SEEN_RANK = np.uint32(10**9)
 """Lifts a single pixel that saw the ground above any number that did not."""
 
@@ -40,8 +43,8 @@ class CoverageMap:
     cells : CellGrid
         Where the cells lie on the map.
     state : array (rows, columns) of int16
-        `OUTSIDE_AREA`, `GAP` where no pixel looked, else an `Outcome`: FOUND or DRY in covered
-        cells, the commonest failure in the others.
+        `OUTSIDE_AREA`, `GAP` or `SHADOW` where no pixel looked, else an `Outcome`: FOUND or DRY in
+        covered cells, the commonest failure in the others.
     """
 
     cells: CellGrid
@@ -54,7 +57,12 @@ class CoverageMap:
 
     def cause(self, state: int) -> str:
         """Return the name of a hole's cause."""
-        return GAP_CAUSE if state == GAP else Outcome(state).name.lower()
+        return hole_cause(state)
+
+
+def hole_cause(state: int) -> str:
+    """Return the name of the cause of a hole by its state in a `CoverageMap`."""
+    return CAUSES.get(state) or Outcome(state).name.lower().replace("_", " ")
 
 
 class SurveyedHull:
@@ -166,7 +174,7 @@ def write_coverage_geojson(
     """Write covered ground, and holes with their cause, as GeoJSON (RFC 7946: WGS 84).
 
     Features have ``kind`` ("covered" or "hole"), ``area_m2`` (on the map) and, for holes,
-    ``cause``: "gap between frames" or the name of the commonest `Outcome` there.
+    ``cause``: "gap between frames", "shadow", or the commonest `Outcome` there in words.
 
     Parameters
     ----------

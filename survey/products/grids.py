@@ -14,6 +14,12 @@ from terrain.map_frame import MapFrame
 
 FloatArray = NDArray[np.float64]
 SOLID_CLASSES = (PointClass.GROUND, PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT)
+BANDS = (
+    ("elevation", "m"),
+    ("density", "1/m2"),
+    ("standard_deviation", "m"),
+    ("uncertainty_95", "m"),
+)
 MOST_OVERVIEW_CELLS = 500_000
 
 
@@ -43,10 +49,19 @@ class ElevationGrid(ElevationMap):
         Points a square metre [1/m2].
     deviation : array (rows, columns)
         Standard deviation of their elevations, n - 1 [m], nan below two points.
+    uncertainty : array (rows, columns)
+        Root mean square of their total vertical uncertainties, 95 % [m]: not smaller for many
+        points, since those of a flash err together; nan where none is known.
     """
 
     density: FloatArray
     deviation: FloatArray
+    uncertainty: FloatArray
+
+    def bands(self) -> NDArray[np.float32]:
+        """Return what stands in files (4, rows, columns), in the order of `BANDS`."""
+        bands = (self.elevation, self.density, self.deviation, self.uncertainty)
+        return np.stack(bands).astype(np.float32)
 
 
 def grid_elevation(cloud: PointCloud, map_frame: MapFrame, *, cell_size: float) -> ElevationGrid:
@@ -66,13 +81,13 @@ def grid_elevation(cloud: PointCloud, map_frame: MapFrame, *, cell_size: float) 
     ProductError
         If the cloud has no such point, or the raster would be too large.
     """
-    on_map = solid_places(cloud, map_frame)
+    on_map, tvu = solid_places(cloud, map_frame), solid_tvu(cloud)
     if on_map.shape[0] == 0:
         raise ProductError(
             f"grid: none of the {len(cloud)} points is seabed, object or ground. "
             "See the outcomes of the pixels for why"
         )
-    return gridded(on_map, CellGrid.covering(on_map, cell_size=cell_size))
+    return gridded(on_map, CellGrid.covering(on_map, cell_size=cell_size), tvu)
 
 
 def solid_places(cloud: PointCloud, map_frame: MapFrame) -> FloatArray:
@@ -80,8 +95,13 @@ def solid_places(cloud: PointCloud, map_frame: MapFrame) -> FloatArray:
     return map_frame.to_map(cloud.position[np.isin(cloud.classification, SOLID_CLASSES)])
 
 
-def gridded(on_map: FloatArray, cells: CellGrid) -> ElevationGrid:
-    """Return places (n, 3), all inside, by cells [m, map]."""
+def solid_tvu(cloud: PointCloud) -> FloatArray:
+    """Return the vertical uncertainties of these points (n,) [m]."""
+    return cloud.tvu[np.isin(cloud.classification, SOLID_CLASSES)].astype(np.float64)
+
+
+def gridded(on_map: FloatArray, cells: CellGrid, tvu: FloatArray) -> ElevationGrid:
+    """Return places (n, 3), all inside, with their uncertainties (n,) by cells [m, map]."""
     index = cells.index_of(on_map)
     order = np.lexsort((on_map[:, 2], index))
     count = np.bincount(index, minlength=cells.rows * cells.columns)
@@ -91,7 +111,17 @@ def gridded(on_map: FloatArray, cells: CellGrid) -> ElevationGrid:
         elevation=elevation.reshape(cells.shape),
         density=count.reshape(cells.shape) / cells.cell_size**2,
         deviation=deviation.reshape(cells.shape),
+        uncertainty=_root_mean_square(tvu, index, count.size).reshape(cells.shape),
     )
+
+
+def _root_mean_square(values: FloatArray, owner: NDArray[np.intp], size: int) -> FloatArray:
+    """Return it by owner (size,), nan where none has a value."""
+    known = np.isfinite(values)
+    count = np.bincount(owner[known], minlength=size)
+    squares = np.bincount(owner[known], values[known] ** 2, size)
+    mean = np.divide(squares, count, out=np.full(size, np.nan), where=count > 0)
+    return np.asarray(np.sqrt(mean))
 
 
 class Overview:

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 COORDINATE_STEP = 0.001
 SCAN_ANGLE_STEP_DEG = 0.006
 MAX_INTENSITY = 65535
+INTENSITY_STEPS = 10_000
+"""Of intensity for a reflectance of 1."""
+
 STANDARD_BYTES = 30  # of point format 6
 POINTS_AT_ONCE = 1_000_000
 EXTRA_STEPS_PER_METRE = 1024
@@ -47,6 +50,9 @@ EXTRA_BYTES: tuple[tuple[str, type[np.generic], str], ...] = (
     ("true_water_path", np.float32, "true one-way path in water, m"),
     ("total_thu", np.float32, "horizontal uncertainty 95 %, m"),
     ("total_tvu", np.float32, "vertical uncertainty 95 %, m"),
+    ("surface_z", np.float64, "water where the ray enters, m"),
+    ("reflectance", np.float32, "of a diffuse target as bright"),
+    ("true_reflectance", np.float32, "of what is truly there"),
     ("true_class", np.uint8, "class of what is truly there"),
     ("substrate", np.uint8, "true bottom, see metrics.json"),
 )
@@ -69,10 +75,12 @@ def write_laz(
 ) -> None:
     """Write a cloud as LAZ (or LAS, by the suffix), every point flagged synthetic.
 
-    Coordinates have steps of 1 mm. GPS time is adjusted standard. Intensity is the echo's
-    photo-electrons, one a step, rounded and clipped to 65535; the extra bytes ``counts`` have
-    them unclipped. The scan angle lies across the track, positive to the right. The point
-    source is the survey line plus one. Surface is return 1 of 2, bottom 2 of 2, all else 1 of 1.
+    Coordinates have steps of 1 mm. GPS time is adjusted standard. Intensity is the
+    reflectance of the target, see `survey.cloud.reflectance`, in steps of 0.0001, clipped to 0 and
+    65535, and 0 where there is no echo; the extra bytes ``reflectance`` have it unclipped, and
+    ``counts`` the echo's photo-electrons. The scan angle lies across the track, positive to the
+    right. The point source is the survey line plus one. Surface is return 1 of 2, bottom 2 of 2,
+    all else 1 of 1.
 
     Parameters
     ----------
@@ -204,6 +212,9 @@ def read_laz(path: Path, map_frame: MapFrame, *, start_utc: datetime) -> PointCl
         water_path=np.array(las.true_water_path),
         tvu=np.array(las.total_tvu),
         thu=np.array(las.total_thu),
+        surface_elevation=np.array(las.surface_z),
+        reflectance=np.array(las.reflectance),
+        true_reflectance=np.array(las.true_reflectance),
         time=np.asarray(las.gps_time) - adjusted_gps_time(start_utc, np.zeros(1)),
         depth=np.array(las.depth_m, dtype=np.float64),
         counts=np.array(las.counts),
@@ -245,7 +256,8 @@ def _header(map_frame: MapFrame, start_utc: datetime) -> laspy.LasHeader:
 def _fill_standard_fields(las: Any, cloud: PointCloud, views: Views) -> None:
     las.synthetic = np.ones(len(cloud), dtype=np.uint8)
     las.classification = cloud.classification
-    las.intensity = np.clip(np.rint(cloud.counts), 0, MAX_INTENSITY).astype(np.uint16)
+    steps = np.nan_to_num(np.rint(cloud.reflectance * INTENSITY_STEPS))
+    las.intensity = np.clip(steps, 0, MAX_INTENSITY).astype(np.uint16)
     las.point_source_id = cloud.line + np.uint16(1)
     las.scan_angle = np.rint(views.scan_angle_deg(cloud) / SCAN_ANGLE_STEP_DEG).astype(np.int16)
     numbers, totals = np.ones((2, len(cloud)), dtype=np.uint8)
@@ -309,6 +321,9 @@ def _extra_columns(cloud: PointCloud, map_frame: MapFrame) -> dict[str, NDArray[
         "true_water_path": cloud.water_path,
         "total_thu": cloud.thu,
         "total_tvu": cloud.tvu,
+        "surface_z": _compressible(cloud.surface_elevation),
+        "reflectance": cloud.reflectance,
+        "true_reflectance": cloud.true_reflectance,
         "frame": cloud.frame,
         "pixel_row": cloud.row,
         "pixel_column": cloud.column,

@@ -84,7 +84,7 @@ def write_bathymetry_glb(
     )
     scene: Any = trimesh.Scene()
     scene.add_geometry(mesh, geom_name="bathymetry", node_name="bathymetry")
-    scene.metadata.update(_place_on_map(map_frame, water_level))
+    scene.metadata.update(place_on_map(map_frame, water_level))
     content = scene.export(file_type="glb")
     with whole_file(path) as partial:
         partial.write_bytes(content)
@@ -93,7 +93,8 @@ def write_bathymetry_glb(
         require_read_back(path, "triangles", same)
 
 
-def _place_on_map(map_frame: MapFrame, water_level: float) -> dict[str, float | int | str]:
+def place_on_map(map_frame: MapFrame, water_level: float) -> dict[str, float | int | str]:
+    """Return what turns a mesh's coordinates into those of the map, as plain values."""
     return {
         "axes": "x east, y up, z south; metres",
         "origin_easting": map_frame.easting,

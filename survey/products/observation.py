@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from survey.cloud.echo import Echo
 from survey.cloud.noise import NoiseModel
-from survey.cloud.ranging import Echo
 from survey.cloud.truth import TrueTargets
 from survey.flight.pose import Frame
 from survey.products.frame_file import FrameResult
@@ -25,7 +25,7 @@ class Observation:
     readings : Readings
         Of the detector.
     noise : NoiseModel
-        Thresholds that the bottom was sought with.
+        At the measured pose, without the doubt of the flash.
     first, bottom : Echo
         First echoes, and bottom echoes.
     targets : TrueTargets

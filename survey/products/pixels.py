@@ -14,7 +14,11 @@ DETECTABLE, HALF = 0.9, 0.5
 SEEN = (Outcome.FOUND, Outcome.DRY)
 REASONS = {
     Outcome.FALSE_BOTTOM: "only false bottoms were found",
-    Outcome.TOO_WEAK: "the bottom echo is too weak: too deep or too turbid",
+    Outcome.TOO_DEEP: "the bottom echo is too weak: the bottom is too deep in such water",
+    Outcome.TOO_TURBID: "the bottom echo is too weak: a layer of the water is too turbid",
+    Outcome.LOW_REFLECTANCE: "the bottom echo is too weak: the bottom is dark",
+    Outcome.GLINT: "the bottom echo is lost in the echo of the water surface",
+    Outcome.NOISE: "bottoms stood alone and were taken for noise",
     Outcome.MERGED_WITH_SURFACE: "too shallow: the bottom echo is merged with the surface echo",
     Outcome.OUTSIDE_GATE: "the bottom echo lies outside the receiver's gate",
     Outcome.SATURATED: "the detector is saturated",
@@ -30,13 +34,13 @@ class PixelTally:
     >>> record = PixelRecord(
     ...     true_position=np.zeros((1, 2, 3)), true_depth=np.full((1, 2), 40.0),
     ...     detection_probability=np.zeros((1, 2)), bottom_counts=np.zeros((1, 2)),
-    ...     outcome=np.full((1, 2), Outcome.TOO_WEAK, dtype=np.uint8),
+    ...     outcome=np.full((1, 2), Outcome.TOO_DEEP, dtype=np.uint8),
     ...     monte_carlo_relative_error=np.zeros((1, 2)))
     >>> tally = PixelTally()
     >>> tally.add(record)
     >>> tally.explain_empty()
-    'no bottom found: the bottom echo is too weak: too deep or too turbid (100 % of 2 wet pixels,
-    true depth 40.0 to 40.0 m)'
+    'no bottom found: the bottom echo is too weak: the bottom is too deep in such water
+    (100 % of 2 wet pixels, true depth 40.0 to 40.0 m)'
     """
 
     def __init__(self) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from os import SEEK_END
 from pathlib import Path
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.points import PointCloud
-from survey.products.writing import ProductError, require_read_back, whole_file
+from survey.products.writing import ProductError, require_read_back, whole_file, write_whole
 from terrain.map_frame import MapFrame
 
 PLY_RECORD = np.dtype(
@@ -27,6 +27,9 @@ PLY_RECORD = np.dtype(
         ("true_water_path", "<f4"),
         ("total_tvu", "<f4"),
         ("total_thu", "<f4"),
+        ("surface_z", "<f8"),
+        ("reflectance", "<f4"),
+        ("true_reflectance", "<f4"),
         ("time_s", "<f8"),
         ("depth_m", "<f8"),
         ("counts", "<f4"),
@@ -48,6 +51,9 @@ COLUMNS = {
     "water_path": "true_water_path",
     "tvu": "total_tvu",
     "thu": "total_thu",
+    "surface_elevation": "surface_z",
+    "reflectance": "reflectance",
+    "true_reflectance": "true_reflectance",
     "time": "time_s",
     "depth": "depth_m",
     "counts": "counts",
@@ -61,6 +67,9 @@ COLUMNS = {
     "substrate": "substrate",
 }
 """Names in the file of the scalar columns of a cloud."""
+
+STANDARD_COLUMNS = ("x", "y", "z", "time_s", "line", "classification")
+"""What a copy without our own columns keeps."""
 
 TRIPLES = {
     "position": "",
@@ -124,7 +133,7 @@ def ply_file(path: Path, map_frame: MapFrame) -> Iterator[Callable[[PointCloud],
     count = checksum = 0
     with whole_file(path) as partial:
         with partial.open("wb") as file:
-            file.write(_header(count, map_frame))
+            file.write(_header(count, _comments(map_frame), PLY_RECORD))
 
             def add(cloud: PointCloud) -> None:
                 nonlocal count, checksum
@@ -136,8 +145,27 @@ def ply_file(path: Path, map_frame: MapFrame) -> Iterator[Callable[[PointCloud],
             yield add
             require_points(path, count)
             file.seek(0)
-            file.write(_header(count, map_frame))
+            file.write(_header(count, _comments(map_frame), PLY_RECORD))
         require_read_back(path, "points", _count_and_checksum(partial) == (count, checksum))
+
+
+def copy_ply(source: Path, path: Path, *, standard_only: bool) -> None:
+    """Write a PLY of ours anew, whole or with `STANDARD_COLUMNS` alone.
+
+    Raises
+    ------
+    ProductError
+        If the source is another kind of PLY, is cut short or has no points.
+    ReadBackError
+        If the file does not read back as written.
+    """
+    comments, records = _read(source)
+    if len(records) == 0:
+        raise ProductError(f"{source}: no points in the file. Run the mission again")
+    if standard_only:
+        records = _columns(records, STANDARD_COLUMNS)
+    text = _header(len(records), comments, records.dtype)
+    write_whole(path, text + records.tobytes())
 
 
 def read_ply(path: Path) -> tuple[PointCloud, MapFrame]:
@@ -179,22 +207,34 @@ def _records(cloud: PointCloud, map_frame: MapFrame) -> NDArray[np.void]:
     return records
 
 
+def _columns(records: NDArray[np.void], names: Sequence[str]) -> NDArray[np.void]:
+    """Return some columns alone, packed as PLY has them."""
+    chosen = np.zeros(len(records), np.dtype([(name, records.dtype[name]) for name in names]))
+    for name in names:
+        chosen[name] = records[name]
+    return chosen
+
+
 def _triple(records: NDArray[np.void], prefix: str) -> NDArray[np.float64]:
     return np.stack([records[f"{prefix}{axis}"] for axis in "xyz"], axis=1)
 
 
-def _header(count: int, map_frame: MapFrame) -> bytes:
+def _comments(map_frame: MapFrame) -> dict[str, str]:
+    return {
+        "epsg": str(map_frame.epsg),
+        "vertical_epsg": str(map_frame.vertical_epsg),
+        "origin_easting": repr(map_frame.easting),
+        "origin_northing": repr(map_frame.northing),
+    }
+
+
+def _header(count: int, comments: Mapping[str, str], columns: np.dtype[np.void]) -> bytes:
     """Return a header that is equally long for any count."""
-    properties = (
-        f"property {PLY_TYPES[PLY_RECORD[name].str]} {name}" for name in PLY_RECORD.names or ()
-    )
+    properties = (f"property {PLY_TYPES[columns[name].str]} {name}" for name in columns.names or ())
     lines = (
         "ply",
         "format binary_little_endian 1.0",
-        f"comment epsg {map_frame.epsg}",
-        f"comment vertical_epsg {map_frame.vertical_epsg}",
-        f"comment origin_easting {map_frame.easting!r}",
-        f"comment origin_northing {map_frame.northing!r}",
+        *(f"comment {name} {text}" for name, text in comments.items()),
         "comment ".ljust(COUNT_DIGITS + len("comment ") - len(str(count)), "-"),
         f"element vertex {count}",
         *properties,

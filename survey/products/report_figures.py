@@ -9,7 +9,7 @@ import numpy as np
 
 from survey.cloud.points import Outcome
 from survey.products.cells import CellGrid
-from survey.products.coverage import GAP, OUTSIDE_AREA, CoverageMap
+from survey.products.coverage import GAP, OUTSIDE_AREA, SHADOW, CoverageMap
 from survey.products.depth_colours import COLOURS, LAND, depth_range
 from survey.products.grids import ElevationMap
 from survey.products.tally import ErrorTally
@@ -25,12 +25,17 @@ STATE_LOOKS = {
     Outcome.FOUND: ("bottom found", "#0072b2"),
     Outcome.DRY: ("land", LAND),
     Outcome.FALSE_BOTTOM: ("false bottom", "#d55e00"),
-    Outcome.TOO_WEAK: ("echo too weak", "#56b4e9"),
+    Outcome.TOO_DEEP: ("too deep", "#56b4e9"),
+    Outcome.TOO_TURBID: ("too turbid", "#8c6d31"),
+    Outcome.LOW_REFLECTANCE: ("low reflectance", "#3b5323"),
+    Outcome.GLINT: ("glint", "#e69f00"),
+    Outcome.NOISE: ("taken for noise", "#e8a5c5"),
     Outcome.MERGED_WITH_SURFACE: ("merged with surface", "#f0e442"),
     Outcome.OUTSIDE_GATE: ("outside gate", "#cc79a7"),
     Outcome.SATURATED: ("saturated", "#000000"),
     Outcome.CHANCE: ("missed by chance", "#009e73"),
     GAP: ("gap between frames", "#9a9a9a"),
+    SHADOW: ("shadow", "#4d4d4d"),
 }
 """Words and colours (Okabe and Ito 2008, told apart by the colour-blind)."""
 

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from survey.cloud.derived_surface import derived_surface
 from survey.cloud.overlaps import OverlapTally
 from survey.cloud.points import PointCloud
 from survey.flight.pose import Frame
@@ -21,14 +22,16 @@ from survey.products.accuracy import Accuracy
 from survey.products.coverage import CoverageTally, write_coverage_geojson
 from survey.products.first_look import FirstLook
 from survey.products.frame_file import FrameResult
-from survey.products.grids import Overview, gridded, solid_places
+from survey.products.grids import Overview, gridded, solid_places, solid_tvu
 from survey.products.json_file import write_json
 from survey.products.las_file import laz_file
+from survey.products.lines_file import write_lines_geojson
 from survey.products.map_tiles import map_tiles
 from survey.products.mesh_files import has_triangles, write_bathymetry_glb
 from survey.products.ply_file import ply_file
 from survey.products.read_ahead import read_ahead
 from survey.products.report import write_report
+from survey.products.shadows import with_shadows
 from survey.products.strip_differences import (
     DIFFERENCES,
     overlap_metrics,
@@ -42,6 +45,7 @@ from survey.products.verdict.features import Cube
 from survey.products.verdict.mission import VerdictTally
 from survey.products.verdict.report import verdict_section
 from survey.progress import Unwatched, Watcher
+from survey.sensor.camera import Camera
 from terrain.map_frame import MapFrame
 from terrain.seabed import Seabed
 
@@ -81,6 +85,8 @@ class ProductSettings:
         On the bottom, for the feature tests.
     strip_adjustment : str
         How the lines were brought together: "none", "boresight" or "offsets".
+    camera : Camera
+        Tells what was in view and hidden.
     """
 
     title: str
@@ -94,6 +100,7 @@ class ProductSettings:
     trajectory_files: Sequence[TrackFormat]
     deviations: tuple[float, ...]
     water: WaterColumn
+    camera: Camera
     order: str | None
     cubes: Sequence[Cube]
     strip_adjustment: str = "none"
@@ -169,7 +176,9 @@ def write_products(
         strip_differences_tif(folder / DIFFERENCES, raster, map_frame) as add_lines,
     ):
         for part in _parts(look, read, frames, map_frame, settings, watch):
-            grid = gridded(solid_places(part.bottom, map_frame), part.tile.cells)
+            grid = gridded(
+                solid_places(part.bottom, map_frame), part.tile.cells, solid_tvu(part.bottom)
+            )
             add_points(part)
             add_cells(grid)
             add_lines(part.tile.cells, part.lines)
@@ -185,12 +194,20 @@ def write_products(
     found["strip_adjustment"] = settings.strip_adjustment
     found["overlaps"] = overlap_metrics(overlaps.overlaps())
     found["substrates"] = substrates.metrics(seabed.substrate_names)
-    judged = verdict.judged(coverage.map(), asked=settings.order)
+    covered = with_shadows(
+        coverage.map(),
+        frames=frames,
+        camera=settings.camera,
+        seabed=seabed,
+        level=settings.water_level,
+        refractive_index=settings.water.refractive_index,
+    )
+    judged = verdict.judged(covered, asked=settings.order)
     found |= judged.metrics
     judged.failures.write(folder / "failures.geojson", map_frame)
     write_json(folder / "metrics.json", found)
     _write_tracks(folder, frames, map_frame, settings)
-    seen, covered = overview.map(), coverage.map()
+    seen = overview.map()
     if has_triangles(seen):
         write_bathymetry_glb(
             folder / "bathymetry.glb", seen, map_frame, water_level=settings.water_level
@@ -279,6 +296,7 @@ def _point_files(
                 add_cloud(part.bottom)
             for add_cloud in surface:
                 add_cloud(part.surface)
+                add_cloud(derived_surface(part.bottom, frames))
 
         yield add
 
@@ -287,6 +305,7 @@ def _write_tracks(
     folder: Path, frames: Sequence[Frame], map_frame: MapFrame, settings: ProductSettings
 ) -> None:
     measured = [frame.measured for frame in frames]
+    write_lines_geojson(folder / "lines.geojson", frames, map_frame)
     write_trajectory_csv(folder / "trajectory.csv", frames, measured, map_frame)
     write_trajectory_files(
         folder,

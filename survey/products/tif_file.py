@@ -13,17 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.products.cells import CellGrid
-from survey.products.grids import ElevationGrid
+from survey.products.grids import BANDS, ElevationGrid
 from survey.products.map_tiles import BLOCK
-from survey.products.writing import require_read_back, whole_file
+from survey.products.writing import ProductError, require_read_back, whole_file
 from terrain.map_frame import MapFrame
 
 if TYPE_CHECKING:
     from rasterio import DatasetReader
     from rasterio.io import DatasetWriter
 
-BANDS = (("elevation", "m"), ("density", "1/m2"), ("standard_deviation", "m"))
-EMPTY = (np.nan, 0.0, np.nan)
+EMPTY = (np.nan, 0.0, np.nan, np.nan)
 CACHE_BYTES = 1 << 26
 FloatArray = NDArray[np.float64]
 Window = tuple[tuple[int, int], tuple[int, int]]
@@ -39,12 +38,12 @@ def write_bathymetry_tif(path: Path, grid: ElevationGrid, map_frame: MapFrame) -
 def bathymetry_tif(
     path: Path, cells: CellGrid, map_frame: MapFrame
 ) -> Iterator[Callable[[ElevationGrid], None]]:
-    """Give a function that adds parts of a grid: elevation, density and standard deviation.
+    """Give a function that adds parts of a grid, its bands those of `survey.products.grids.BANDS`.
 
     Empty cells are nan (in the density band 0); see `banded_tif`.
     """
     with banded_tif(path, cells, map_frame, bands=BANDS, empty=EMPTY) as add:
-        yield lambda grid: add(grid.cells, np.stack([grid.elevation, grid.density, grid.deviation]))
+        yield lambda grid: add(grid.cells, grid.bands())
 
 
 @contextmanager
@@ -55,7 +54,7 @@ def banded_tif(
     *,
     bands: Sequence[tuple[str, str]],
     empty: Sequence[float],
-) -> Iterator[Callable[[CellGrid, FloatArray], None]]:
+) -> Iterator[Callable[[CellGrid, NDArray[np.floating]], None]]:
     """Give a function that adds parts of a raster to a tiled GeoTIFF of float32.
 
     North is up, edges are whole multiples of the cell size, the CRS is compound. Parts are some
@@ -98,6 +97,36 @@ def banded_tif(
             require_read_back(path, "cells", blocks.are_in(file))
 
 
+def read_bathymetry_tif(path: Path) -> ElevationGrid:
+    """Read a grid that `write_bathymetry_tif` wrote.
+
+    Raises
+    ------
+    ProductError
+        If the file has other bands.
+    """
+    import rasterio
+
+    with rasterio.open(path) as file:
+        if file.descriptions != tuple(name for name, _ in BANDS):
+            raise ProductError(f"{path}: not the bands of a bathyflash grid. Run the mission again")
+        elevation, density, deviation, uncertainty = file.read().astype(np.float64)
+        cells = CellGrid(
+            west=file.transform.c,
+            north=file.transform.f,
+            cell_size=file.transform.a,
+            rows=file.height,
+            columns=file.width,
+        )
+    return ElevationGrid(
+        cells=cells,
+        elevation=elevation,
+        density=density,
+        deviation=deviation,
+        uncertainty=uncertainty,
+    )
+
+
 class _Blocks:
     """Writes parts, knows which blocks hold none, and remembers what was written where."""
 
@@ -107,7 +136,7 @@ class _Blocks:
         self._untouched = {place for place, _ in file.block_windows()}
         self._written: list[tuple[Window, int]] = []
 
-    def add(self, part: CellGrid, values: FloatArray) -> None:
+    def add(self, part: CellGrid, values: NDArray[np.floating]) -> None:
         """Write a part of the raster; what lies outside it is left out."""
         rows, columns = self._cells.window(part)
         bands = values[:, *part.window(self._cells)]
@@ -117,7 +146,7 @@ class _Blocks:
         for place in self._untouched.intersection(touched):
             self._clear(place)
         window = ((rows.start, rows.stop), (columns.start, columns.stop))
-        self._file.write(bands.astype(np.float32), window=window)
+        self._file.write(bands, window=window)
         self._written.append((window, _checksum(bands)))
 
     def fill(self) -> None:

@@ -31,6 +31,7 @@ from survey.flight.pose import Frame, Pose
 from survey.optics.water import WaterColumn, petzold_water
 from survey.products.frame_file import FrameResult, frame_bytes, read_frame
 from survey.products.run_products import ProductSettings, write_products
+from survey.sensor.camera import Camera
 from terrain.map_frame import MapFrame
 from terrain.seabed import Seabed
 
@@ -101,6 +102,9 @@ def made(frame: Frame) -> FrameResult:
         water_path=-truth[:, 2].astype(np.float32),
         tvu=random.normal(0.2, 0.01, n).astype(np.float32),
         thu=random.normal(1.0, 0.1, n).astype(np.float32),
+        surface_elevation=np.zeros(n),
+        reflectance=np.full(n, 0.1, np.float32),
+        true_reflectance=np.full(n, 0.1, np.float32),
         time=np.full(n, frame.time),
         depth=-measured[:, 2],
         counts=random.gamma(4.0, 50.0, n).astype(np.float32),
@@ -127,7 +131,7 @@ def made(frame: Frame) -> FrameResult:
         true_position=truth.reshape(*shape, 3),
         true_depth=-truth[:, 2].reshape(shape),
         detection_probability=random.random(shape),
-        outcome=np.where(lost, Outcome.TOO_WEAK, Outcome.FOUND).astype(np.uint8).reshape(shape),
+        outcome=np.where(lost, Outcome.TOO_DEEP, Outcome.FOUND).astype(np.uint8).reshape(shape),
         bottom_counts=random.gamma(4.0, 50.0, shape),
         monte_carlo_relative_error=random.normal(0.07, 0.01, shape),
     )
@@ -149,6 +153,7 @@ def settings(thinning: float) -> ProductSettings:
         trajectory_files=(),
         deviations=(0.0,) * 6,
         water=WaterColumn.uniform(water),
+        camera=Camera(rows=8, columns=16, pixel_tangent=0.032, long_side="along"),
     )
 
 

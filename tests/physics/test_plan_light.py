@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from survey.expected_light import expected_light
 from survey.mission import fly_frame
+from survey.optics.response_table import Illumination, response_table
 from survey.optics.water import petzold_water
-from survey.planning.expectation import expected_light
 from survey.planning.plan import make_plan
-from survey.planning.response_table import Illumination, response_table
 from survey.preparation import prepare
 from survey.products.pixels import tallied
 from survey.scenario.scenario import Scenario

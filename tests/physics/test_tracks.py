@@ -135,7 +135,7 @@ def test_every_track_counts_alike(reached):
 
 
 @kernel
-def frames_of(dx, dy, dz, circle, count):
+def whole_frames(dx, dy, dz, circle, count):
     state, frames = np.empty(2, np.uint64), np.empty((count, 9))
     start_stream(state, 1, 2, 3, 4, 5)
     for i in range(count):
@@ -147,7 +147,7 @@ def frames_of(dx, dy, dz, circle, count):
 def test_axes_make_a_frame_around_a_direction(direction):
     """Right-handed, orthonormal, and at every azimuth alike: 4 standard errors of 10,000."""
     azimuth = 2.0 * np.pi * np.arange(256) / 256
-    frames = frames_of(*direction, np.column_stack([np.cos(azimuth), np.sin(azimuth)]), 10_000)
+    frames = whole_frames(*direction, np.column_stack([np.cos(azimuth), np.sin(azimuth)]), 10_000)
     a, b, c = frames[:, :3], frames[:, 3:6], frames[:, 6:]
     assert np.array_equal(c, np.tile(direction, (len(c), 1)))
     assert np.linalg.norm(a, axis=1) == pytest.approx(1.0, abs=1e-12)

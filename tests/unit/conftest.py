@@ -101,14 +101,14 @@ def _fly(frame: Frame, rows: int, columns: int) -> tuple[PointCloud, PointCloud,
     truth = np.column_stack([place, Survey.elevation_at(place[:, 0], place[:, 1])])
     depth = 0.25 - truth[:, 2]
     outcome = np.where(depth > 0.0, Outcome.FOUND, Outcome.DRY).astype(np.uint8)
-    outcome[(depth > 7.0) & (random.random(depth.size) < 0.1)] = Outcome.TOO_WEAK
+    outcome[(depth > 7.0) & (random.random(depth.size) < 0.1)] = Outcome.TOO_DEEP
     measured = truth + random.normal(0.0, [0.05, 0.05, 0.08], truth.shape)
     level = np.column_stack([place, np.full(depth.size, 0.25)])
     level[:, 2] += random.normal(0.0, 0.05, depth.size)
     address = {"frame": frame, "row": row, "column": column}
     classes = np.where(depth > 0.0, PointClass.BATHYMETRIC, PointClass.GROUND)
-    classes[outcome == Outcome.TOO_WEAK] = PointClass.NO_BOTTOM_FOUND
-    measured[outcome == Outcome.TOO_WEAK, 2] = 0.25
+    classes[outcome == Outcome.TOO_DEEP] = PointClass.NO_BOTTOM_FOUND
+    measured[outcome == Outcome.TOO_DEEP, 2] = 0.25
     bottom = _cloud(measured, truth, classes, address)
     sea = _cloud(level, level, np.full(depth.size, PointClass.WATER_SURFACE), address)
     surface = replace(sea, true_elevation=np.full(depth.size, 0.25))
@@ -142,6 +142,9 @@ def _cloud(
         water_path=np.maximum(0.25 - truth[:, 2], 0.0).astype(np.float32),
         tvu=np.full(n, 0.2, np.float32),
         thu=np.full(n, 1.5, np.float32),
+        surface_elevation=np.full(n, 0.25),
+        reflectance=np.linspace(0.0, 10.0, n, dtype=np.float32),
+        true_reflectance=np.full(n, 0.1, np.float32),
         time=np.full(n, frame.time),
         depth=np.maximum(0.25 - position[:, 2], 0.0),
         counts=np.linspace(0.0, 1e5, n, dtype=np.float32),

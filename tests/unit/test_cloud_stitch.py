@@ -12,7 +12,7 @@ from survey.cloud.points import PointClass, PointCloud
 from survey.cloud.stitch import stitched
 
 
-def frames_of(cloud: PointCloud) -> list[PointCloud]:
+def whole_frames(cloud: PointCloud) -> list[PointCloud]:
     return [cloud.select(cloud.frame == frame) for frame in np.unique(cloud.frame)]
 
 
@@ -34,7 +34,7 @@ def cloud(small_survey: Any) -> PointCloud:
 
 
 def test_without_thinning_every_point_stays_in_the_order_of_pixels(cloud: PointCloud) -> None:
-    parts = [part.select(np.arange(len(part))[::-1]) for part in frames_of(cloud)[::-1]]
+    parts = [part.select(np.arange(len(part))[::-1]) for part in whole_frames(cloud)[::-1]]
     whole = stitched(parts, cell_size=0.0)
     assert len(whole) == len(cloud)
     assert np.array_equal(np.lexsort((whole.column, whole.row, whole.frame)), np.arange(len(whole)))
@@ -42,7 +42,7 @@ def test_without_thinning_every_point_stays_in_the_order_of_pixels(cloud: PointC
 
 def test_the_best_point_of_every_cell_stays(cloud: PointCloud) -> None:
     side = 9.0
-    thinned = stitched(frames_of(cloud), cell_size=side)
+    thinned = stitched(whole_frames(cloud), cell_size=side)
     cells: dict[tuple[int, int], list[Any]] = {}
     for i, place in enumerate(cloud.position):
         key = (int(place[0] // side), int(place[1] // side))
@@ -62,17 +62,17 @@ def test_the_best_point_of_every_cell_stays(cloud: PointCloud) -> None:
 
 
 def test_the_order_of_frames_and_points_does_not_matter(cloud: PointCloud) -> None:
-    wanted = stitched(frames_of(cloud), cell_size=9.0)
+    wanted = stitched(whole_frames(cloud), cell_size=9.0)
     chance = np.random.default_rng(2)
     for _ in range(3):
         shuffled = cloud.select(chance.permutation(len(cloud)))
-        parts = frames_of(shuffled)
+        parts = whole_frames(shuffled)
         order = chance.permutation(len(parts))
         assert equal(stitched([parts[i] for i in order], cell_size=9.0), wanted)
 
 
 def test_thinning_twice_changes_nothing(cloud: PointCloud) -> None:
-    once = stitched(frames_of(cloud), cell_size=9.0)
+    once = stitched(whole_frames(cloud), cell_size=9.0)
     assert len(once) < len(cloud)
     assert equal(stitched([once], cell_size=9.0), once)
 

@@ -86,6 +86,7 @@ def one_pixel(depth: float, time: float, kind: PointClass) -> TrueTargets:
         water_path=np.full((1, 1), depth),
         depth=np.full((1, 1), depth),
         classification=np.full((1, 1), kind, np.uint8),
+        reflectance=np.full((1, 1), 0.1),
         substrate=np.zeros((1, 1), np.uint8),
     )
 
@@ -104,7 +105,7 @@ CASES = [
     (5.0, 1.61e-6, WET, 5.0, False, False, 0.9, Outcome.OUTSIDE_GATE),
     (np.nan, np.inf, WET, np.nan, False, False, 0.0, Outcome.OUTSIDE_GATE),
     (1.1, 1.4e-6, WET, 5.0, False, False, 0.9, Outcome.MERGED_WITH_SURFACE),
-    (5.0, 1.4e-6, WET, 5.0, False, False, 0.49, Outcome.TOO_WEAK),
+    (5.0, 1.4e-6, WET, 5.0, False, False, 0.49, Outcome.TOO_DEEP),
     (5.0, 1.4e-6, WET, 5.0, False, False, 0.51, Outcome.CHANCE),
 ]
 
@@ -126,6 +127,7 @@ def test_every_pixel_has_the_outcome_that_explains_it(
         targets=one_pixel(depth, time, kind),
         error=np.full((1, 1), error),
         found=np.full((1, 1), found),
+        noise=np.full((1, 1), False),
         saturated=np.full((1, 1), saturated),
         probability=np.full((1, 1), probability),
         gate=(1.3e-6, 1.6e-6),

@@ -144,7 +144,7 @@ def test_another_seed_is_another_survey(small: Scenario, tmp_path: Path) -> None
 
 @pytest.mark.parametrize(
     ("depth", "bins", "reason"),
-    [(28.0, 400, "too weak: too deep or too turbid"), (60.0, 300, "outside the receiver's gate")],
+    [(28.0, 400, "too weak: the bottom is too deep"), (60.0, 300, "outside the receiver's gate")],
 )
 def test_water_too_deep_is_an_error_that_says_so(
     small: Scenario, tmp_path: Path, depth: float, bins: int, reason: str

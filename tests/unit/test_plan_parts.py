@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from survey.flight.pose import Frame, Pose
+from survey.optics import water_response as responses
+from survey.optics.response_table import response_table
 from survey.optics.water import WaterColumn, petzold_water
-from survey.planning import water_response as responses
 from survey.planning.gaps import Swath, swath
 from survey.planning.make_response_tables import tables
 from survey.planning.overlap import (
@@ -21,7 +22,6 @@ from survey.planning.overlap import (
     side_by_side,
     triangles,
 )
-from survey.planning.response_table import response_table
 from survey.planning.views import WaterSurface, views
 from survey.sensor.camera import Camera
 
@@ -188,7 +188,7 @@ def test_tables_fall_with_depth_and_share_out_all_their_light(name: str, lit: st
 def test_the_script_makes_the_shipped_tables() -> None:
     """With a fiftieth of the walks, at a depth where a tenth of the light comes back."""
     made = tables(work=0.02)
-    folder = resources.files("survey.planning") / "data"
+    folder = resources.files("survey.optics") / "data"
     shipped = json.loads((folder / "response_tables.json").read_text(encoding="utf-8"))
     assert set(made) == set(shipped)
     assert made["late_edges_m"] == shipped["late_edges_m"]

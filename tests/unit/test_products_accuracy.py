@@ -121,8 +121,8 @@ def test_density_of_one_line(survey_of: Any) -> None:
 def test_pixels_by_outcome(small_survey: Any) -> None:
     values = tallied(small_survey.records).metrics()
     outcome = np.array([record.outcome for record in small_survey.records])
-    weak = int((outcome == Outcome.TOO_WEAK).sum())
-    assert values["missed"]["too_weak"] == weak > 0
+    weak = int((outcome == Outcome.TOO_DEEP).sum())
+    assert values["missed"]["too_deep"] == weak > 0
     assert sum(values["missed"].values()) == weak
     assert set(values["missed"]).isdisjoint({"found", "dry"})
     assert values["pixels_wet"] == (outcome != Outcome.DRY).sum()
@@ -145,7 +145,7 @@ def test_how_deep_the_bottom_was_found(small_survey: Any) -> None:
         depth = record.true_depth
         found = np.select([depth < 7.0, depth < 8.0], [19, 13], 7)
         missed = np.arange(depth.size).reshape(depth.shape) % 20 >= found
-        outcome = np.where(missed, Outcome.TOO_WEAK, Outcome.FOUND).astype(np.uint8)
+        outcome = np.where(missed, Outcome.TOO_DEEP, Outcome.FOUND).astype(np.uint8)
         records.append(replace(record, outcome=outcome))
     values = judged(replace(small_survey, records=records))
     assert values["found_depth_m"] == values["detection_depth_m"] == 7.0
@@ -190,7 +190,7 @@ def test_nothing_found_is_null_not_nan(small_survey: Any) -> None:
 
 @pytest.mark.parametrize(
     ("outcome", "words"),
-    [(Outcome.TOO_WEAK, "too deep or too turbid"), (Outcome.OUTSIDE_GATE, "outside the receiv")],
+    [(Outcome.TOO_DEEP, "too deep in such water"), (Outcome.OUTSIDE_GATE, "outside the receiv")],
 )
 def test_an_empty_cloud_is_explained(small_survey: Any, outcome: Outcome, words: str) -> None:
     record = small_survey.records[5]

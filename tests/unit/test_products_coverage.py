@@ -139,6 +139,6 @@ def test_a_flight_that_sees_nothing_is_an_error(small_survey: Any) -> None:
 def test_one_pixel_that_saw_the_bottom_covers_its_cell(small_survey: Any) -> None:
     """Ten failures and one success look at the same place."""
     record = small_survey.records[20]
-    failed = replace(record, outcome=np.full_like(record.outcome, Outcome.TOO_WEAK))
+    failed = replace(record, outcome=np.full_like(record.outcome, Outcome.TOO_DEEP))
     covered = map_of(replace(small_survey, records=[record]), records=[failed] * 10 + [record])
     assert np.all(np.isin(covered.state, [Outcome.FOUND, OUTSIDE_AREA]))

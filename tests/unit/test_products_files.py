@@ -157,5 +157,5 @@ def test_report_is_self_contained_and_repeatable(small_survey: Any, tmp_path: Pa
     assert all(target.startswith("data:image/png;base64,") for target in parsed.targets)
     assert "Bar <b>" in parsed.words
     assert "Flown & stitched." in parsed.words
-    assert "too weak" in parsed.words
+    assert "too deep" in parsed.words
     assert "nine in ten should down to 7.0 m (c z 2.8, K_d z 1.3)" in parsed.words

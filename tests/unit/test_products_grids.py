@@ -13,7 +13,7 @@ import trimesh
 
 from survey.cloud.points import PointClass
 from survey.products.cells import CellGrid
-from survey.products.grids import grid_elevation
+from survey.products.grids import BANDS, grid_elevation
 from survey.products.mesh_files import grid_surface, write_bathymetry_glb
 from survey.products.tif_file import write_bathymetry_tif
 from survey.products.writing import ProductError
@@ -28,6 +28,7 @@ def test_median_density_and_deviation_of_a_cell(small_survey: Any) -> None:
         cloud,
         position=np.column_stack([place, height]),
         classification=np.array([40, 43, 40, 2, 40, 45], dtype=np.uint8),
+        tvu=np.array([0.1, 0.5, 0.7, 0.3, np.nan, np.nan], dtype=np.float32),
     )
     grid = grid_elevation(cloud, small_survey.map_frame, cell_size=2.0)
     assert grid.cells.shape == (1, 2)
@@ -35,6 +36,7 @@ def test_median_density_and_deviation_of_a_cell(small_survey: Any) -> None:
     assert grid.elevation.tolist() == [[-2.0, -4.5]]
     assert grid.density.tolist() == [[0.75, 0.5]]
     np.testing.assert_allclose(grid.deviation, [[np.sqrt(19.0), np.sqrt(0.5)]])
+    np.testing.assert_allclose(grid.uncertainty, [[0.5, 0.3]])
 
 
 def test_grid_has_the_true_shape_the_right_way_up(small_survey: Any) -> None:
@@ -68,11 +70,11 @@ def test_tif_read_back(small_survey: Any, tmp_path: Path) -> None:
     write_bathymetry_tif(path, grid, small_survey.map_frame)
     assert [file.name for file in tmp_path.iterdir()] == ["bathymetry.tif"]
     with rasterio.open(path) as file:
-        assert file.descriptions == ("elevation", "density", "standard_deviation")
-        assert file.units == ("m", "1/m2", "m")
-        assert file.dtypes == ("float32",) * 3
+        assert file.descriptions == tuple(name for name, _ in BANDS)
+        assert file.units == ("m", "1/m2", "m", "m")
+        assert file.dtypes == ("float32",) * 4
         assert np.isnan(file.nodata)
-        assert file.block_shapes == [(256, 256)] * 3
+        assert file.block_shapes == [(256, 256)] * 4
         assert file.transform.e == -8.0
         assert file.transform.c % 8.0 == file.transform.f % 8.0 == 0.0
         crs = file.crs.to_wkt()

@@ -19,6 +19,7 @@ from survey.products.frame_file import FrameResult
 from survey.products.ply_file import read_ply
 from survey.products.run_products import ProductSettings, write_products
 from survey.products.writing import ProductError
+from survey.sensor.camera import Camera
 
 
 @dataclass
@@ -62,6 +63,9 @@ def settings(survey: Any) -> ProductSettings:
         trajectory_files=(),
         deviations=(0.0,) * 6,
         water=WaterColumn.uniform(water),
+        camera=Camera(rows=8, columns=16, pixel_tangent=0.032, long_side="along"),
+        order=None,
+        cubes=(),
     )
 
 
@@ -147,7 +151,7 @@ def test_no_bottom_is_an_error_before_anything_is_written(
                 classification=np.full(len(result.bottom), PointClass.NO_BOTTOM_FOUND, np.uint8),
             ),
             record=replace(
-                result.record, outcome=np.full_like(result.record.outcome, Outcome.TOO_WEAK)
+                result.record, outcome=np.full_like(result.record.outcome, Outcome.TOO_DEEP)
             ),
         )
         for number, result in results.items()

@@ -103,7 +103,8 @@ def test_laz_returns_intensity_and_scan_angle(small_survey: Any, tmp_path: Path)
     assert np.all(las.number_of_returns[in_water] == 2)
     assert np.all(las.number_of_returns[~in_water] == 1)
     assert las.intensity.max() == 65535
-    assert np.array_equal(las.intensity, np.minimum(np.rint(bottom.counts), 65535))
+    steps = np.rint(bottom.reflectance * 10_000)
+    assert np.array_equal(las.intensity, np.minimum(steps, 65535))
     angle = las.scan_angle * 0.006
     assert np.all((angle > 0.0) == (bottom.row >= 4))
     assert 5.0 < np.abs(angle).max() < np.degrees(np.arctan(0.128)) + 0.1
@@ -139,7 +140,8 @@ def test_extra_bytes_are_described(small_survey: Any, tmp_path: Path) -> None:
     wanted += [f"{kind}_{axis}" for kind in ("uncorrected", "true") for axis in "xyz"]
     wanted += ["true_elevation", *(f"true_surface_{axis}" for axis in "xyz")]
     wanted += [*(f"true_normal_{axis}" for axis in "xyz"), "true_water_path"]
-    assert list(extra) == [*wanted, "total_thu", "total_tvu", "true_class", "substrate"]
+    wanted += ["total_thu", "total_tvu", "surface_z", "reflectance", "true_reflectance"]
+    assert list(extra) == [*wanted, "true_class", "substrate"]
     assert all(4 < len(dimension.description) <= 32 for dimension in extra.values())
 
 

@@ -14,7 +14,7 @@ from survey.products.cells import CellGrid
 from survey.products.coverage import CoverageTally, hull_of
 from survey.products.first_look import FirstLook
 from survey.products.frame_file import FrameResult
-from survey.products.grids import Overview, grid_elevation, gridded, solid_places
+from survey.products.grids import Overview, grid_elevation, gridded, solid_places, solid_tvu
 from survey.products.map_tiles import MapTile, map_tiles
 from survey.products.tally import ErrorTally
 from survey.products.tile_points import TilePoints, tile_points
@@ -90,11 +90,15 @@ def test_the_same_cells_are_gridded(
 ) -> None:
     bottom = stitched([result.bottom for result in results], cell_size=THINNING)
     raster = look.raster(cell_size=GRID)
-    wanted = gridded(solid_places(bottom, small_survey.map_frame), raster)
+    wanted = gridded(solid_places(bottom, small_survey.map_frame), raster, solid_tvu(bottom))
     found = {name: np.full(raster.shape, np.nan) for name in ("elevation", "density", "deviation")}
     overview = Overview(raster)
     for part in parts:
-        grid = gridded(solid_places(part.bottom, small_survey.map_frame), part.tile.cells)
+        grid = gridded(
+            solid_places(part.bottom, small_survey.map_frame),
+            part.tile.cells,
+            solid_tvu(part.bottom),
+        )
         for name, values in found.items():
             values[raster.window(grid.cells)] = getattr(grid, name)[grid.cells.window(raster)]
         overview.add(grid)

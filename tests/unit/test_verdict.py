@@ -11,6 +11,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.stats import binom
 
+from survey.cloud.overlaps import line_cells
 from survey.cloud.points import Outcome, PixelRecord, PointCloud
 from survey.optics.water import WaterColumn, petzold_water
 from survey.optics.water.apparent import diffuse_attenuation, secchi_depth_of, tyler_secchi_depth
@@ -293,6 +294,7 @@ def judged(
         looked_at=places,
         outcomes=outcomes,
         flash=flash,
+        lines=line_cells(survey.bottom.position, survey.bottom.line, cell_size=8.0),
     )
     tally.add(part)
     return tally.judged(coverage.map(), asked=asked)

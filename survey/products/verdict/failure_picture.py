@@ -9,6 +9,7 @@ from survey.products.verdict.failures import (
     DEPTH_ERROR,
     FALSE_BOTTOM,
     FIRST_HOLE,
+    HOLE,
     MEETS,
     OUTSIDE,
     PLACE_ERROR,
@@ -36,7 +37,7 @@ def failure_picture(failures: FailureMap) -> bytes:
     handles = []
     for state in np.unique(failures.state[wet]).tolist():
         here = failures.state == state
-        colour = LOOKS[state] if state < FIRST_HOLE else STATE_LOOKS[state - FIRST_HOLE - 1][1]
+        colour = LOOKS[state] if state < FIRST_HOLE else STATE_LOOKS[state - HOLE][1]
         words = "meets the order" if state == MEETS else failures.cause(state)
         share = 100.0 * here.sum() / wet.sum()
         handles.append(Patch(color=colour, label=f"{words} ({share:.1f} %)"))

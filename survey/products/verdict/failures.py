@@ -14,7 +14,7 @@ from survey.cloud.points import Outcome, PointCloud
 from survey.cloud.truth import FALSE_BOTTOM_ERROR
 from survey.products.accuracy import BOTTOM_CLASSES
 from survey.products.cells import CellGrid
-from survey.products.coverage import GAP_CAUSE, cell_polygons, map_feature
+from survey.products.coverage import SHADOW, cell_polygons, hole_cause, map_feature
 from survey.products.json_file import json_bytes
 from survey.products.standards import Order
 from survey.products.standards.orders import WITHIN
@@ -35,7 +35,9 @@ CAUSES = (
 )
 DEPTH_ERROR, FALSE_BOTTOM, PLACE_ERROR, TOO_FEW_TIMES = range(1, len(CAUSES))
 FIRST_HOLE = len(CAUSES)
-"""From here on a state is that of a hole: `FIRST_HOLE` + 1 + the state of the coverage map."""
+"""From here on a state is that of a hole: `HOLE` + the state of the coverage map."""
+
+HOLE = FIRST_HOLE - SHADOW
 
 
 @dataclass(kw_only=True)
@@ -105,7 +107,7 @@ class FailureCells:
         rules = (
             (~passes.wet, np.int16(OUTSIDE)),
             (missing & (hole_state == Outcome.FALSE_BOTTOM), np.int16(FALSE_BOTTOM)),
-            (missing & ~seen_once, hole_state + np.int16(FIRST_HOLE + 1)),
+            (missing & ~seen_once, hole_state + np.int16(HOLE)),
             (self.wrong != MEETS, self.wrong.astype(np.int16)),
             (seen_once, np.int16(TOO_FEW_TIMES)),
         )
@@ -141,8 +143,7 @@ class FailureMap:
         """Return the name of what is wrong."""
         if state < FIRST_HOLE:
             return CAUSES[state]
-        number = state - FIRST_HOLE - 1
-        return GAP_CAUSE if number < 0 else Outcome(number).name.lower().replace("_", " ")
+        return hole_cause(state - HOLE)
 
     def write(self, path: Path, map_frame: MapFrame) -> None:
         """Write the failing areas, and lost cubes as points, as GeoJSON (RFC 7946: WGS 84).

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.constants import speed_of_light
 
 from survey.optics.interface import fresnel_reflectance
-from survey.planning.water_response import WaterResponse
+from survey.optics.water_response import WaterResponse
 from survey.sensor.camera import Camera
 from survey.sensor.laser import Laser
 from survey.sensor.receiver import Receiver
@@ -71,11 +71,15 @@ class ExpectedLight:
             [1].
         """
         table = self.water.table
-        path = depth * self._in_water(self._slant)
+        path = self.paths(depth)
         share = table.late_share_at(float(np.median(path)))
-        light = self._geometry(path) * table.two_way_at(path) * reflectance / np.pi
+        light = self.geometry(path) * table.two_way_at(path) * reflectance / np.pi
         edges = path[..., None] + table.late_edges
         return self._binned(edges, light[..., None] * share)
+
+    def paths(self, depth: float) -> FloatArray:
+        """Return half the pixels' paths in water (rows, columns) to a bottom at a depth [m]."""
+        return np.asarray(depth * self._in_water(self._slant))
 
     def column(self) -> FloatArray:
         """Return the light of bottomless water (rows, columns, bins) [photo-electrons]."""
@@ -83,7 +87,7 @@ class ExpectedLight:
             self.water.table.column_edges, (*self.camera.shape, len(self.water.table.column_edges))
         )
         path = 0.5 * (edges[..., 1:] + edges[..., :-1])
-        light = self._geometry(path) * self.water.table.column * np.diff(edges, axis=-1)
+        light = self.geometry(path) * self.water.table.column * np.diff(edges, axis=-1)
         return self._binned(edges, light)
 
     def surface_echo(self) -> FloatArray:
@@ -102,7 +106,7 @@ class ExpectedLight:
             ]
         ).reshape(forward.shape)
         # per power on the water; the light on it is per area
-        light = self._launched * glint / (self.height * self._slant) ** 2 / self._slant
+        light = self.launched * glint / (self.height * self._slant) ** 2 / self._slant
         edges = np.broadcast_to(AT_ONCE, (*self.camera.shape, 2))
         return self._binned(edges, light[..., None])
 
@@ -133,20 +137,20 @@ class ExpectedLight:
         return 1.0 / np.sqrt(1.0 - (1.0 - slant**-2.0) / self.refractive_index**2)
 
     @property
-    def _launched(self) -> float:
+    def launched(self) -> float:
         """Photo-electrons of the light launched into a pixel, times the aperture's area [m2]."""
         forward, right = self.camera.half_tangents
         share = self.pixel_solid_angle / (4.0 * forward * right)
         electrons = self.laser.photons_per_pulse * self.photo_electrons_per_photon
         return electrons * share * self.receiver.aperture_area
 
-    def _geometry(self, path: FloatArray) -> FloatArray:
+    def geometry(self, path: FloatArray) -> FloatArray:
         """Return photo-electrons for each unit of radiance over irradiance [1]."""
         slant = self._slant.reshape(self._slant.shape + (1,) * (path.ndim - 2))
         index = self.refractive_index
         passed = (1.0 - fresnel_reflectance(1.0, 1.0 / index)) ** 2
         reach = index * self.height * slant + path
-        return np.asarray(self._launched * passed / reach**2 / slant**2)
+        return np.asarray(self.launched * passed / reach**2 / slant**2)
 
     def _binned(self, edges: FloatArray, light: FloatArray) -> FloatArray:
         """Return light spread between edges of half the path in water, as the gate sees it."""

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.optics.phase import petzold
+from survey.optics.response_table import Illumination, ResponseTable, response_table
 from survey.optics.water import PAPER_COEFFICIENTS, Water, WaterColumn, petzold_water
 from survey.optics.water.apparent import diffuse_attenuation
-from survey.planning.response_table import Illumination, ResponseTable, response_table
 
 FloatArray = NDArray[np.float64]
 

@@ -83,6 +83,6 @@ def response_table(name: str, illumination: Illumination) -> ResponseTable:
 
 @cache
 def _shipped() -> Mapping[str, Any]:
-    source = resources.files("survey.planning") / "data" / "response_tables.json"
+    source = resources.files("survey.optics") / "data" / "response_tables.json"
     found: dict[str, Any] = json.loads(source.read_text(encoding="utf-8"))
     return found
