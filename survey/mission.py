@@ -13,6 +13,7 @@ from survey.cloud.georeference import pixel_rays
 from survey.cloud.ranging import blind_at, first_echo, last_echo
 from survey.cloud.record import pixel_record
 from survey.cloud.truth import true_targets
+from survey.cloud.uncertainty import Surroundings
 from survey.errors import UserError
 from survey.flight.pose import Frame
 from survey.preparation import Mission, prepare
@@ -35,6 +36,7 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
 
     rays = pixel_rays(camera=mission.camera, pose=frame.measured)
     first = first_echo(counts=readings.counts, noise=noise)
+    first = mission.scattering().on_time(first, rays)
     line = find_water(
         first=first,
         frame=frame,
@@ -42,6 +44,9 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
         expected_level=mission.expected_level(frame.time),
         refractive_index=engine.water.refractive_index,
         wave_height=surface.wave_height,
+    )
+    line, unknown = mission.refraction.applied(
+        line, first=first, frame=frame, rays=rays, pulse_sigma=mission.budget.pulse_sigma
     )
     in_doubt = noise.of_flash(waveforms.variance[:2].sum(axis=0))
     bottom = last_echo(counts=readings.counts, noise=in_doubt, surface_time=line.surface_time)
@@ -64,9 +69,13 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
         targets=targets,
         seabed=mission.seabed,
         group_index=engine.water.group_index,
+        scattering=mission.scattering(),
+    )
+    around = Surroundings(
+        frame=frame, rays=rays, line=line, unknown=unknown, scattering=mission.scattering()
     )
     on_surface, on_bottom = (
-        mission.budget.applied(cloud, frame=frame) for cloud in (on_surface, on_bottom)
+        mission.budget.applied(cloud, around) for cloud in (on_surface, on_bottom)
     )
     record = pixel_record(
         waveforms=waveforms,

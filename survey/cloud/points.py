@@ -34,6 +34,19 @@ class Outcome(IntEnum):
     CHANCE = 7
 
 
+class Cause(IntEnum):
+    """What spoils a point most."""
+
+    NONE = 0
+    FALSE_ECHO = 1
+    RANGE_NOISE = 2
+    SCATTERING = 3
+    WAVES = 4
+    NAVIGATION = 5
+    WATER_LEVEL = 6
+    RELIEF = 7
+
+
 @dataclass(frozen=True, kw_only=True)
 class PointCloud:
     """Points as columns of equal length n.
