@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 
+from survey.cloud.causes import with_causes
 from survey.cloud.frame_points import bottom_points, find_water, surface_points
 from survey.cloud.georeference import pixel_rays
 from survey.cloud.ranging import blind_at, first_echo, last_echo
@@ -75,7 +76,15 @@ def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
         frame=frame, rays=rays, line=line, unknown=unknown, scattering=mission.scattering()
     )
     on_surface, on_bottom = (
-        mission.budget.applied(cloud, around) for cloud in (on_surface, on_bottom)
+        with_causes(
+            mission.budget.applied(cloud, around),
+            budget=mission.budget,
+            around=around,
+            true_pose=frame.pose,
+            true_level=surface.level,
+            targets=targets,
+        )
+        for cloud in (on_surface, on_bottom)
     )
     record = pixel_record(
         waveforms=waveforms,
@@ -158,6 +167,9 @@ def summary(folder: Path, metrics: dict[str, object]) -> str:
             f"bottom against the true seabed: bias {_metres(metrics['bias_m'])}, "
             f"95 % within {_metres(metrics['p95_abs_error_m'])}, "
             f"false bottoms {metrics['false_bottoms']}",
+            f"uncertainty, 95 %: vertical {_metres(metrics['tvu_median_m'])} holds for "
+            f"{_share(metrics['tvu_coverage'])}, horizontal {_metres(metrics['thu_median_m'])} for "
+            f"{_share(metrics['thu_coverage'])} of the points",
             f"written to {folder}: report.html, bottom.laz, bathymetry.tif and others",
         )
     )
@@ -165,6 +177,10 @@ def summary(folder: Path, metrics: dict[str, object]) -> str:
 
 def _metres(value: object) -> str:
     return f"{value:.3f} m" if isinstance(value, float) else "not measured"
+
+
+def _share(value: object) -> str:
+    return f"{100.0 * value:.1f} %" if isinstance(value, float) else "none"
 
 
 def fly_frames(

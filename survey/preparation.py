@@ -137,6 +137,7 @@ def prepare(scenario: Scenario) -> Mission:
             thinning=scenario.processing.thinning_m,
             grid=scenario.processing.grid_m,
             pixel_spacing=camera.pixel_tangent * scenario.flight.height_m,
+            pixel_tangent=camera.pixel_tangent,
             survey_area=components.survey_area(scenario),
             trajectory_files=scenario.navigation.trajectory_files,
             deviations=components.navigation(scenario).deviations,

@@ -87,22 +87,23 @@ class Displacements:
         return np.where(self.wet[:, None], moved / STEP, 0.0)
 
     def of_pose(self, pose: PoseUncertainty) -> FloatArray:
-        """Return where standard errors of the pose move them (9, n, 3) [m].
-
-        The level of the water is told by the first echoes: it goes with their mean.
-        """
+        """Return where standard errors of the pose move them (9, n, 3) [m]."""
         measured = self.frame.measured
         moved = [
-            self._shifted(replace(measured, position=measured.position + error))
+            self.of_other_pose(replace(measured, position=measured.position + error))
             for error in np.concatenate([pose.position_errors, pose.lever_errors(measured)]) * STEP
         ]
         moved += [
-            self._shifted(replace(measured, **{name: getattr(measured, name) + STEP * error}))
+            self.of_other_pose(replace(measured, **{name: getattr(measured, name) + STEP * error}))
             for name, error in pose.attitude_errors.items()
         ]
         return np.stack(moved) / STEP
 
-    def _shifted(self, pose: Pose) -> FloatArray:
+    def of_other_pose(self, pose: Pose) -> FloatArray:
+        """Return where the points (n, 3) move when the pose is another one [m].
+
+        The level of the water is told by the first echoes: it goes with their mean.
+        """
         rise = pose.position[2] - self.frame.measured.position[2]
         reach = (self.level - self.frame.measured.position[2]) / self.rays[:, 2]
         rise += float(np.mean((self._rays(pose) - self.rays)[:, 2] * reach))

@@ -16,7 +16,7 @@ from survey.cloud.georeference import (
     place_in_water,
 )
 from survey.cloud.local_surface import fitted_planes
-from survey.cloud.points import PointClass, PointCloud
+from survey.cloud.points import Cause, PointClass, PointCloud
 from survey.cloud.ranging import Echo
 from survey.cloud.scattering import Scattering
 from survey.cloud.truth import TrueTargets
@@ -261,7 +261,7 @@ def _cloud(
 ) -> PointCloud:
     """Return the chosen pixels of one frame as points, in the order of rows and columns.
 
-    Without uncertainties: those come from `survey.cloud.uncertainty`.
+    Without uncertainties and causes: see `survey.cloud.uncertainty` and `survey.cloud.causes`.
     """
     row, column = np.nonzero(which)
     count = len(row)
@@ -278,6 +278,7 @@ def _cloud(
         water_path=water_path[which].astype(np.float32),
         tvu=np.full(count, np.nan, np.float32),
         thu=np.full(count, np.nan, np.float32),
+        cause=np.full(count, Cause.NONE, np.uint8),
         time=frame.time + np.nan_to_num(echo.time[which]),
         depth=depth[which],
         counts=np.nan_to_num(echo.counts[which]).astype(np.float32),

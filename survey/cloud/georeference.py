@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +46,10 @@ class WaterPath:
     normal: FloatArray
     air_time: FloatArray
     direction: FloatArray
+
+    def at(self, which: Any) -> WaterPath:
+        """Return the paths of some rays, by any index of arrays."""
+        return WaterPath(**{one.name: getattr(self, one.name)[which] for one in fields(self)})
 
 
 def bend_at_surface(

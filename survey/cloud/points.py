@@ -35,7 +35,7 @@ class Outcome(IntEnum):
 
 
 class Cause(IntEnum):
-    """What spoils a point most."""
+    """Which effect truly moved a point most; NONE where no echo was placed."""
 
     NONE = 0
     FALSE_ECHO = 1
@@ -45,6 +45,7 @@ class Cause(IntEnum):
     NAVIGATION = 5
     WATER_LEVEL = 6
     RELIEF = 7
+    """In budgets alone: the truth does not tell relief from light that came from elsewhere."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,6 +76,8 @@ class PointCloud:
     tvu, thu : array (n,)
         Total vertical and horizontal uncertainty, 95 % [m], see `survey.cloud.uncertainty`; nan
         where no echo was placed.
+    cause : array (n,)
+        `Cause` of its error, see `survey.cloud.causes`.
     time : array (n,)
         Seconds since the start of the mission [s].
     depth : array (n,)
@@ -99,6 +102,7 @@ class PointCloud:
     water_path: NDArray[np.float32]
     tvu: NDArray[np.float32]
     thu: NDArray[np.float32]
+    cause: NDArray[np.uint8]
     time: NDArray[np.float64]
     depth: NDArray[np.float64]
     counts: NDArray[np.float32]

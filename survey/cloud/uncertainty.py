@@ -109,23 +109,8 @@ class Budget:
 
     def effects(self, cloud: PointCloud, around: Surroundings) -> dict[Cause, FloatArray]:
         """Return the vectors (k, n, 3) of each effect but relief."""
-        wet = cloud.depth > 0.0
-        moves = Displacements(
-            camera=self.camera,
-            frame=around.frame,
-            row=cloud.row,
-            column=cloud.column,
-            time=cloud.time - around.frame.time,
-            wet=wet,
-            level=around.line.level,
-            refractive_index=self.refractive_index,
-            group_index=self.group_index,
-        )
-        late = time_noise(
-            counts=cloud.counts.astype(np.float64),
-            snr=cloud.snr.astype(np.float64),
-            pulse_sigma=self.pulse_sigma,
-        )
+        wet, moves = cloud.depth > 0.0, self.displacements(cloud, around)
+        late = self.late(cloud)
         height, tilt = moves.of_level(), moves.of_slopes()
         return {
             Cause.RANGE_NOISE: (moves.of_time() * late[:, None])[None],
@@ -136,6 +121,28 @@ class Budget:
             Cause.NAVIGATION: moves.of_pose(self.pose),
             Cause.WATER_LEVEL: height[None] * self._level_error(around.line),
         }
+
+    def displacements(self, cloud: PointCloud, around: Surroundings) -> Displacements:
+        """Return where errors move the points of a frame."""
+        return Displacements(
+            camera=self.camera,
+            frame=around.frame,
+            row=cloud.row,
+            column=cloud.column,
+            time=cloud.time - around.frame.time,
+            wet=cloud.depth > 0.0,
+            level=around.line.level,
+            refractive_index=self.refractive_index,
+            group_index=self.group_index,
+        )
+
+    def late(self, cloud: PointCloud) -> FloatArray:
+        """Return the standard deviation of the points' times by counting noise (n,) [s]."""
+        return time_noise(
+            counts=cloud.counts.astype(np.float64),
+            snr=cloud.snr.astype(np.float64),
+            pulse_sigma=self.pulse_sigma,
+        )
 
     def _level_error(self, line: WaterLine) -> float:
         """Return the standard error of the level that the median of first echoes tells [m]."""

@@ -43,6 +43,7 @@ EXTRA_BYTES: tuple[tuple[str, type[np.generic], str], ...] = (
     ("total_tvu", np.float32, "vertical uncertainty 95 %, m"),
     ("true_class", np.uint8, "class of what is truly there"),
     ("substrate", np.uint8, "true bottom, see metrics.json"),
+    ("cause", np.uint8, "of error: docs/uncertainty.md"),
 )
 RETURNS = {
     PointClass.WATER_SURFACE: (1, 2),
@@ -127,6 +128,7 @@ def read_laz(path: Path, map_frame: MapFrame, *, start_utc: datetime) -> PointCl
         water_path=np.array(las.true_water_path),
         tvu=np.array(las.total_tvu),
         thu=np.array(las.total_thu),
+        cause=np.array(las.cause),
         time=np.asarray(las.gps_time) - adjusted_gps_time(start_utc, np.zeros(1)),
         depth=np.array(las.depth_m, dtype=np.float64),
         counts=np.array(las.counts),
@@ -210,6 +212,7 @@ def _extra_columns(cloud: PointCloud, map_frame: MapFrame) -> dict[str, NDArray[
         "true_elevation": _compressible(cloud.true_elevation),
         "true_class": cloud.true_classification,
         "substrate": cloud.substrate,
+        "cause": cloud.cause,
     }
 
 

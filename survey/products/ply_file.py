@@ -34,6 +34,7 @@ PLY_RECORD = np.dtype(
         ("classification", "u1"),
         ("true_class", "u1"),
         ("substrate", "u1"),
+        ("cause", "u1"),
     ]
 )
 PLY_TYPES = {"<f8": "double", "<f4": "float", "<u4": "uint", "<u2": "ushort", "|u1": "uchar"}
@@ -53,6 +54,7 @@ COLUMNS = {
     "classification": "classification",
     "true_classification": "true_class",
     "substrate": "substrate",
+    "cause": "cause",
 }
 """Names in the file of the scalar columns of a cloud."""
 

@@ -28,6 +28,7 @@ from survey.products.report import write_report
 from survey.products.substrates import substrate_metrics
 from survey.products.track_files import TrackFormat, write_trajectory_files
 from survey.products.trajectory_file import write_trajectory_csv
+from survey.products.uncertainty_check import uncertainty_metrics
 from survey.products.writing import ProductError
 from terrain.seabed import Seabed
 
@@ -50,6 +51,8 @@ class ProductSettings:
         Sides of the cells in which overlaps are thinned and elevations gridded [m].
     pixel_spacing : float
         Distance of neighbouring pixels on the bottom [m].
+    pixel_tangent : float
+        Side of a pixel in the tangent plane [1].
     survey_area : array (n, 2) or None
         Ring around the area that was ordered [m, local]; without one it is the hull of what all
         pixels look at.
@@ -68,6 +71,7 @@ class ProductSettings:
     thinning: float
     grid: float
     pixel_spacing: float
+    pixel_tangent: float
     survey_area: FloatArray | None
     trajectory_files: Sequence[TrackFormat]
     deviations: tuple[float, ...]
@@ -122,6 +126,12 @@ def write_products(
         survey_area=area,
         cell_size=cell,
         water=settings.water,
+    )
+    found |= uncertainty_metrics(
+        bottom,
+        frames=frames,
+        pixel_tangent=settings.pixel_tangent,
+        refractive_index=settings.water.refractive_index,
     )
     found["substrates"] = substrate_metrics(bottom, results, seabed.substrate_names)
     write_json(folder / "metrics.json", found)

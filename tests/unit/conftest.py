@@ -142,6 +142,7 @@ def _cloud(
         water_path=np.maximum(0.25 - truth[:, 2], 0.0).astype(np.float32),
         tvu=np.full(n, 0.2, np.float32),
         thu=np.full(n, 1.5, np.float32),
+        cause=(np.arange(n) % 7).astype(np.uint8),
         time=np.full(n, frame.time),
         depth=np.maximum(0.25 - position[:, 2], 0.0),
         counts=np.linspace(0.0, 1e5, n, dtype=np.float32),

@@ -132,7 +132,8 @@ def test_extra_bytes_are_described(small_survey: Any, tmp_path: Path) -> None:
     wanted += [f"{kind}_{axis}" for kind in ("uncorrected", "true") for axis in "xyz"]
     wanted += ["true_elevation", *(f"true_surface_{axis}" for axis in "xyz")]
     wanted += [*(f"true_normal_{axis}" for axis in "xyz"), "true_water_path"]
-    assert list(extra) == [*wanted, "total_thu", "total_tvu", "true_class", "substrate"]
+    wanted += ["total_thu", "total_tvu", "true_class", "substrate", "cause"]
+    assert list(extra) == wanted
     assert all(4 < len(dimension.description) <= 32 for dimension in extra.values())
 
 
