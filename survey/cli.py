@@ -65,9 +65,12 @@ def run(
         str | None, typer.Option(metavar="A:B", help="Only these frames, from 0, B excluded.")
     ] = None,
     settings: Settings = None,
+    refly: Annotated[
+        bool, typer.Option("--refly", help="Start over: remove an earlier run in RUN.")
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing but errors.")] = False,
 ) -> None:
-    """Fly a mission and write its run folder."""
+    """Fly a mission and write its run folder; go on where an earlier run of it stopped."""
     from survey.console import watching
     from survey.scenario.components import flight_plan
     from survey.scenario.load import load_scenario, parse_frames, parse_overrides
@@ -82,8 +85,20 @@ def run(
             output,
             workers=flown.run.workers if workers is None else workers,
             frames=chosen,
+            refly=refly,
             watch=watcher,
         )
+
+
+@app.command()
+def status(
+    run: Annotated[Path, typer.Argument(metavar="RUN", help="A run folder.")],
+) -> None:
+    """Show how far a run is, from another terminal."""
+    from survey.run_status import RunStatus
+
+    for line in RunStatus.of(run).lines:
+        typer.echo(line)
 
 
 @app.command()
@@ -93,6 +108,7 @@ def check(
 ) -> None:
     """Check scenario files and show all their faults at once."""
     from survey.scenario.components import flight_size
+    from survey.scenario.gate_notes import gate_notes
     from survey.scenario.load import load_scenario, parse_overrides
     from survey.scenario.seabed_files import require_readable_files
     from survey.scenario.sun import sun_notes
@@ -109,7 +125,8 @@ def check(
             statuses.add(status)
         else:
             typer.echo(f"{sound.name}: sound, {flight_size(sound)}")
-            for note in (*water_notes(sound), *sun_notes(sound.sun, sound.surface)):
+            notes = (*water_notes(sound), *sun_notes(sound.sun, sound.surface), *gate_notes(sound))
+            for note in notes:
                 typer.echo(f"{sound.name}: {note}")
     for status in (OUR_FAULT, BAD_INPUT, FILE_MISSING):
         if status in statuses:

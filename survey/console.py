@@ -11,6 +11,7 @@ from survey.progress import Unwatched, Watcher
 
 if TYPE_CHECKING:
     from rich.console import Console
+    from rich.progress import TaskID
 
 SECONDS_BETWEEN_LINES = 5.0
 
@@ -45,13 +46,17 @@ class PlainLines:
 
     def __init__(self, stream: TextIO, clock: Callable[[], float] = time.monotonic) -> None:
         self._stream, self._clock = stream, clock
-        self._total = self._done = 0
+        self._total = self._done = self._steps = self._written = 0
         self._start = self._last_line = 0.0
 
     def started(self, total: int) -> None:
         """Say how many frames there are."""
         self._total, self._start = total, self._clock()
         self._say(f"{total} frames to fly")
+
+    def noticed(self, text: str) -> None:
+        """Say it."""
+        self._say(text)
 
     def frame_done(self, index: int, seconds: float) -> None:
         """Say how far the mission is, not too often."""
@@ -61,6 +66,20 @@ class PlainLines:
         if due or self._done in (1, self._total):
             self._last_line = now
             self._say(progress_line(self._done, self._total, now - self._start))
+
+    def writing(self, total: int) -> None:
+        """Begin to count what is written."""
+        if self._steps == 0:
+            self._start = self._last_line = self._clock()
+        self._steps = total
+
+    def written(self, steps: int) -> None:
+        """Say how far the products are, not too often."""
+        self._written += steps
+        now = self._clock()
+        if now - self._last_line >= SECONDS_BETWEEN_LINES:
+            self._last_line = now
+            self._say(writing_line(self._written / self._steps, now - self._start))
 
     def finished(self, summary: str) -> None:
         """Say what came of it."""
@@ -80,6 +99,19 @@ def progress_line(done: int, total: int, elapsed: float) -> str:
     """
     rate = done / elapsed if elapsed > 0.0 else float("inf")
     return f"{done}/{total} frames, {rate:.2f} frames/s, {(total - done) / rate:.0f} s left"
+
+
+def writing_line(done: float, elapsed: float) -> str:
+    """Return one line on which share of the products is done.
+
+    Examples
+    --------
+    >>> writing_line(0.25, 10.0)
+    'products: 25 % done, 30 s left'
+    """
+    return f"products: {done:.0%} done, {elapsed * (1.0 / done - 1.0):.0f} s left".replace(
+        "%", " %"
+    )
 
 
 class ProgressBar:
@@ -102,7 +134,7 @@ class ProgressBar:
 
         self._console = console
         self._bar = Progress(
-            TextColumn("flying"),
+            TextColumn("{task.description}"),
             BarColumn(),
             MofNCompleteColumn(),
             TextColumn("{task.fields[rate]}"),
@@ -111,6 +143,7 @@ class ProgressBar:
             console=self._console,
         )
         self._task = self._bar.add_task("flying", total=None, rate="")
+        self._products: TaskID | None = None
         self._begun, self._done = time.monotonic(), 0
 
     def started(self, total: int) -> None:
@@ -119,11 +152,26 @@ class ProgressBar:
         self._bar.update(self._task, total=total)
         self._bar.start()
 
+    def noticed(self, text: str) -> None:
+        """Say it above the bar."""
+        self._console.print(text, highlight=False, markup=False)
+
     def frame_done(self, index: int, seconds: float) -> None:
         """Move the bar on."""
         self._done += 1
         rate = self._done / max(time.monotonic() - self._begun, 1e-9)
         self._bar.update(self._task, advance=1, rate=f"{rate:.2f} frames/s")
+
+    def writing(self, total: int) -> None:
+        """Turn to a bar of what is written."""
+        if self._products is None:
+            self._products = self._bar.add_task("writing products", rate="")
+        self._bar.update(self._products, total=total)
+
+    def written(self, steps: int) -> None:
+        """Move that bar on."""
+        if self._products is not None:
+            self._bar.advance(self._products, steps)
 
     def finished(self, summary: str) -> None:
         """Take the bar away and say what came of it."""

@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
+from typing import Any
 
 from survey.cloud.causes import with_causes
 from survey.cloud.frame_points import bottom_points, find_water, surface_points
@@ -23,6 +24,8 @@ from survey.products.performance import Stopwatch, write_performance
 from survey.products.run_products import write_products
 from survey.progress import Unwatched, Watcher
 from survey.run_folder import RunFolder
+from survey.run_lock import require_free, sole_pilot
+from survey.run_log import logged
 from survey.scenario.scenario import Scenario
 from survey.transport.random import COUNTS, chance
 
@@ -105,6 +108,7 @@ def fly(
     *,
     workers: int = 0,
     frames: range | None = None,
+    refly: bool = False,
     watch: Watcher | None = None,
 ) -> Path:
     """Fly a mission into a run folder, and go on where an earlier run of it stopped.
@@ -119,8 +123,10 @@ def fly(
         Frames flown at once; 0 is one for each core. The products do not depend on it.
     frames : range, optional
         Only these frames; the products cover all frames that are then present.
+    refly : bool
+        Remove what an earlier run left in the folder, whatever it was a run of.
     watch : Watcher, optional
-        Is told of the progress.
+        Is told of the progress; ``log.txt`` in the folder is too.
 
     Returns
     -------
@@ -131,32 +137,51 @@ def fly(
     ------
     OtherRunError
         When the folder belongs to another scenario or to other code.
+    BusyRunError
+        At once, when another process flies into the folder.
     ValueError
         When the flight leaves the seabed, or nothing at all was found: the text says why.
     """
-    watch, clock = watch or Unwatched(), Stopwatch()
+    require_free(folder)
     mission = prepare(scenario)
-    run = RunFolder.open(folder, scenario)
+    run = RunFolder.open(folder, scenario, refly=refly)
+    with sole_pilot(folder), logged(folder, watch or Unwatched()) as told:
+        _fly_missing(mission, run, workers=workers, frames=frames, watch=told)
+        found = _write_products(mission, run, told)
+        told.finished(summary(folder, found))
+    return folder
+
+
+def _fly_missing(
+    mission: Mission, run: RunFolder, *, workers: int, frames: range | None, watch: Watcher
+) -> None:
+    """Fly the chosen frames that are not whole."""
+    clock = Stopwatch()
     chosen = set(frames if frames is not None else range(len(mission.frames)))
     missing = [f for f in mission.frames if f.index in chosen and f.index not in run.whole]
+    for index in sorted(chosen & set(run.spoilt)):
+        watch.noticed(f"frame {index} is flown again: {run.spoilt[index]}")
     watch.started(len(missing))
     for index, result, seconds in fly_frames(mission, missing, workers):
         run.keep(index, result)
         clock.add(seconds)
         watch.frame_done(index, seconds)
+    write_performance(run.path / "performance.json", clock)
+
+
+def _write_products(mission: Mission, run: RunFolder, watch: Watcher) -> dict[str, Any]:
+    """Write the products of all frames that are whole, and return the metrics."""
     present = [frame for frame in mission.frames if frame.index in run.whole]
     if not present:
-        raise UserError(f"{folder}: no frame was flown. Choose frames with --frames A:B")
-    found = write_products(
-        folder,
-        results=run.read([frame.index for frame in present]),
+        raise UserError(f"{run.path}: no frame was flown. Choose frames with --frames A:B")
+    return write_products(
+        run.path,
+        read=run.frame,
         frames=present,
         seabed=mission.seabed,
         settings=mission.products,
+        watch=watch,
     )
-    write_performance(folder / "performance.json", clock)
-    watch.finished(summary(folder, found))
-    return folder
 
 
 def summary(folder: Path, metrics: dict[str, object]) -> str:

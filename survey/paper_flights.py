@@ -18,7 +18,7 @@ from survey.paper import instrument
 from survey.paper.reproduce import Findings
 from survey.paper.single_element import MATRIX
 from survey.planning.expectation import expectation
-from survey.products.accuracy import stitched_depths
+from survey.products.accuracy import StitchedDepths
 from survey.products.frame_file import FrameResult
 from survey.products.reach import optical_depths
 from survey.products.writing import ProductError
@@ -129,7 +129,7 @@ def judge(
     threshold_depth_m                     nine flashes in ten reach the threshold of the stated
                                           false-alarm rate, by `survey.planning.expectation`
     run_depth_m                           the same with thresholds raised by the Monte Carlo error
-    stitched_depth_m, half_*              see `survey.products.accuracy.stitched_depths`
+    stitched_depth_m, half_*              see `survey.products.accuracy.StitchedDepths`
     *_c_z, *_k_d_z                        these depths times c and K_d
     true_depth_least_m, _greatest_m       of the bottom under the pixels
     found_fraction                        share of pixels that found the true bottom
@@ -150,6 +150,8 @@ def judge(
     water = components.water(scenario)
     level = components.sea_surface(scenario).level
     cloud = stitched([r.bottom for r in results], cell_size=scenario.processing.thinning_m)
+    reached = StitchedDepths(water_level=level)
+    reached.add(cloud)
     outcome = np.concatenate([r.record.outcome.ravel() for r in results])
     depth = np.concatenate([r.record.true_depth.ravel() for r in results])
     fires = np.concatenate([r.record.detection_probability.ravel() for r in results])
@@ -169,7 +171,7 @@ def judge(
         "snr_depth_m": limit / water.surface.attenuation,
         "threshold_depth_m": threshold.depth,
         "run_depth_m": run.depth,
-        **stitched_depths(cloud, water_level=level),
+        **reached.metrics(),
     }
     values = {
         **depths,
@@ -189,4 +191,4 @@ def _flown(scenario: Scenario, folder: Path) -> list[FrameResult]:
     with suppress(ProductError):
         fly(scenario, folder, workers=scenario.run.workers)
     run = RunFolder.open(folder, scenario)
-    return run.read(sorted(run.whole))
+    return [run.frame(index) for index in sorted(run.whole)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from survey.cloud.points import PointClass, PointCloud
 
@@ -24,12 +25,18 @@ def stitched(clouds: Sequence[PointCloud], *, cell_size: float) -> PointCloud:
         Side of a cell [m]; 0 keeps every point.
     """
     cloud = PointCloud.concatenate(clouds)
-    cloud = cloud.select(np.lexsort((cloud.column, cloud.row, cloud.frame)))
+    return cloud.select(kept_points(cloud, cell_size=cell_size))
+
+
+def kept_points(cloud: PointCloud, *, cell_size: float) -> NDArray[np.intp]:
+    """Return which points of a cloud `stitched` keeps, in the order of frame, row and column."""
+    order = np.lexsort((cloud.column, cloud.row, cloud.frame))
     if cell_size == 0.0 or len(cloud) == 0:
-        return cloud
-    east, north = np.floor(cloud.position[:, :2] / cell_size).astype(np.int64).T
-    missing = cloud.classification == PointClass.NO_BOTTOM_FOUND
-    order = np.lexsort((np.arange(len(cloud)), -cloud.snr, missing, north, east))
+        return order
+    east, north = np.floor(cloud.position[order, :2] / cell_size).astype(np.int64).T
+    cell = (east - east.min()) * (np.ptp(north) + 1) + north - north.min()
+    missing = cloud.classification[order] == PointClass.NO_BOTTOM_FOUND
+    best_first = np.lexsort((-cloud.snr[order], missing, cell))
     first = np.ones(len(order), np.bool_)
-    first[1:] = (np.diff(east[order]) != 0) | (np.diff(north[order]) != 0)
-    return cloud.select(np.sort(order[first]))
+    first[1:] = np.diff(cell[best_first]) != 0
+    return order[np.sort(best_first[first])]

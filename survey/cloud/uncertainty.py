@@ -155,7 +155,7 @@ class Budget:
         """Return half the side of the pixels' footprints; in water they widen by 1 / n less."""
         height = around.frame.measured.position[2] - cloud.position[:, 2]
         reach = height - cloud.depth * (1.0 - 1.0 / self.refractive_index)
-        return 0.5 * self.camera.pixel_tangent * reach
+        return np.asarray(0.5 * self.camera.pixel_tangent * reach)
 
 
 def _bed(cloud: PointCloud, shape: tuple[int, ...]) -> tuple[FloatArray, FloatArray]:

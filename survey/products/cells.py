@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -90,11 +90,30 @@ class CellGrid:
 
         return Affine(self.cell_size, 0.0, self.west, 0.0, -self.cell_size, self.north)
 
+    def window(self, other: CellGrid) -> tuple[slice, slice]:
+        """Return rows and columns of these cells that lie in another part of the same lattice."""
+        row = round((self.north - other.north) / self.cell_size)
+        column = round((other.west - self.west) / self.cell_size)
+        rows = slice(max(row, 0), max(min(row + other.rows, self.rows), 0))
+        return rows, slice(max(column, 0), max(min(column + other.columns, self.columns), 0))
+
+    def part(self, window: tuple[slice, slice]) -> CellGrid:
+        """Return the cells of a window as a raster of its own."""
+        rows, columns = window
+        return replace(
+            self,
+            west=self.west + columns.start * self.cell_size,
+            north=self.north - rows.start * self.cell_size,
+            rows=max(rows.stop - rows.start, 0),
+            columns=max(columns.stop - columns.start, 0),
+        )
+
     def index_of(self, on_map: FloatArray) -> NDArray[np.intp]:
         """Return the flat index, row by row, of the cell of each place inside (n,)."""
         column = np.floor((on_map[:, 0] - self.west) / self.cell_size).astype(np.intp)
-        row = self.rows - 1 - np.floor((on_map[:, 1] - self.extent[2]) / self.cell_size)
-        return np.asarray(row.astype(np.intp) * self.columns + column)
+        up = np.floor((on_map[:, 1] - self.extent[2]) / self.cell_size).astype(np.intp)
+        column, up = np.clip(column, 0, self.columns - 1), np.clip(up, 0, self.rows - 1)
+        return np.asarray((self.rows - 1 - up) * self.columns + column)
 
     def contains(self, on_map: FloatArray) -> NDArray[np.bool_]:
         """Return which of the places (n, 2 or 3) lie inside (n,)."""
@@ -107,6 +126,12 @@ class CellGrid:
         x = self.west + (np.arange(self.columns) + 0.5) * self.cell_size
         y = self.north - (np.arange(self.rows) + 0.5) * self.cell_size
         return np.stack(np.meshgrid(x, y), axis=-1)
+
+    def centres_of(self, index: NDArray[np.intp]) -> FloatArray:
+        """Return the centres of the cells that flat indices name (n, 2) [m]."""
+        row, column = np.divmod(index, self.columns)
+        x = self.west + (column + 0.5) * self.cell_size
+        return np.stack([x, self.north - (row + 0.5) * self.cell_size], axis=-1)
 
 
 def inside_ring(cells: CellGrid, ring: FloatArray) -> NDArray[np.bool_]:

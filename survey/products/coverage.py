@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,9 +16,7 @@ from survey.products.json_file import json_bytes
 from survey.products.pixels import SEEN
 from survey.products.writing import ProductError, write_whole
 from terrain.map_frame import MapFrame
-
-if TYPE_CHECKING:
-    from scipy.spatial import cKDTree
+from terrain.nearness import count_near
 
 FloatArray = NDArray[np.float64]
 OUTSIDE_AREA = -2
@@ -27,6 +25,7 @@ GAP_CAUSE = "gap between frames"
 SEEN_RANK = 10**9
 """Lifts a single pixel that saw the ground above any number that did not."""
 
+PLACES_AT_ONCE = 1 << 18
 MIN_HOLE_AREA = 50.0
 DEGREE_DECIMALS = 8
 """1e-8 degrees are about a millimetre."""
@@ -58,76 +57,102 @@ class CoverageMap:
         return GAP_CAUSE if state == GAP else Outcome(state).name.lower()
 
 
-def surveyed_hull(records: Sequence[PixelRecord]) -> FloatArray:
-    """Return the convex hull (n, 2) of where all pixels look, counter-clockwise [m, local].
+class SurveyedHull:
+    """The convex hull of where all pixels look, frame by frame."""
 
-    Raises
-    ------
-    ProductError
-        If fewer than three pixels look at a seabed.
-    """
-    from scipy.spatial import ConvexHull
+    def __init__(self) -> None:
+        self._corners, self._waiting = np.zeros((0, 2)), [np.zeros((0, 2))]
 
-    places, _ = _pixels(records)
-    if places.shape[0] < 3:
-        raise ProductError("coverage: fewer than three pixels look at the seabed. Check the flight")
-    return np.asarray(places[ConvexHull(places).vertices])
+    def add(self, record: PixelRecord) -> None:
+        """Add a frame."""
+        self._waiting.append(looked_at(record)[0])
+        if sum(len(places) for places in self._waiting) > PLACES_AT_ONCE:
+            self._corners, self._waiting = self._merged(), []
+
+    def ring(self) -> FloatArray:
+        """Return its corners (n, 2), counter-clockwise [m, local].
+
+        Raises
+        ------
+        ProductError
+            If fewer than three pixels look at a seabed.
+        """
+        corners = self._merged()
+        if len(corners) < 3:
+            raise ProductError(
+                "coverage: fewer than three pixels look at the seabed. Check the flight"
+            )
+        return corners
+
+    def _merged(self) -> FloatArray:
+        from scipy.spatial import ConvexHull
+
+        places = np.concatenate([self._corners, *self._waiting])
+        return places if len(places) < 3 else np.asarray(places[ConvexHull(places).vertices])
 
 
-def coverage_map(
-    records: Sequence[PixelRecord],
-    map_frame: MapFrame,
-    *,
-    survey_area: FloatArray,
-    cell_size: float,
-    reach: float,
-) -> CoverageMap:
-    """Sort the cells of the survey area by what the pixels near their centres found.
+def hull_of(records: Iterable[PixelRecord]) -> FloatArray:
+    """Return the ring of `SurveyedHull` around all that several frames look at."""
+    hull = SurveyedHull()
+    for record in records:
+        hull.add(record)
+    return hull.ring()
+
+
+class CoverageTally:
+    """Sorts the cells of the survey area by what the pixels near their centres found.
 
     A cell is covered when a pixel within ``reach`` of its centre found the bottom or saw land.
     Otherwise its state is the commonest outcome of these pixels; with no such pixel it is a gap.
 
     Parameters
     ----------
-    records : sequence of PixelRecord
-        One a frame.
-    map_frame : MapFrame
-        Where the local frame lies on the map.
     survey_area : array (n, 2)
-        Ring around the area that should be covered [m, local], say `surveyed_hull`.
+        Ring around the area that should be covered [m, map], say of `SurveyedHull`.
     cell_size : float
         Side of a cell [m].
     reach : float
         Half the diagonal of a pixel on the bottom [m]: what one pixel answers for.
     """
-    from scipy.spatial import cKDTree
 
-    ring = survey_area + map_frame.origin[:2]
-    cells = CellGrid.covering(ring, cell_size=cell_size)
-    inside = inside_ring(cells, ring)
-    centres = cells.centres()[inside] - map_frame.origin[:2]
-    places, outcomes = _pixels(records)
-    trees = {
-        outcome: cKDTree(places[outcomes == outcome])
-        for outcome in Outcome
-        if (outcomes == outcome).any()
-    }
-    state = np.full(cells.shape, OUTSIDE_AREA, dtype=np.int16)
-    state[inside] = _states(centres, trees, reach)
-    return CoverageMap(cells=cells, state=state)
+    def __init__(self, *, survey_area: FloatArray, cell_size: float, reach: float) -> None:
+        self.cells = CellGrid.covering(survey_area, cell_size=cell_size)
+        self._area, self._reach = survey_area, reach
+        self._state = np.full(self.cells.shape, GAP, dtype=np.int16)
 
+    def add(
+        self, places: FloatArray, outcomes: NDArray[np.uint8], cells: CellGrid | None = None
+    ) -> None:
+        """Decide on some cells, by default all, with all pixels in reach of them.
 
-def _states(
-    centres: FloatArray, trees: Mapping[Outcome, cKDTree], reach: float
-) -> NDArray[np.int16]:
-    state = np.full(centres.shape[0], GAP, dtype=np.int16)
-    most = np.zeros(centres.shape[0], dtype=np.intp)
-    for outcome, tree in trees.items():
-        near = np.asarray(tree.query_ball_point(centres, reach, return_length=True))
-        rank = np.where(near > 0, near + (outcome in SEEN) * SEEN_RANK, 0)
-        state[rank > most] = outcome
-        most = np.maximum(most, rank)
-    return state
+        Parameters
+        ----------
+        places : array (n, 2)
+            Where pixels look [m, map].
+        outcomes : array (n,)
+        cells : CellGrid, optional
+            Cells of the same lattice.
+        """
+        window = self.cells.window(cells or self.cells)
+        part = self.cells.part(window)
+        near = count_near(
+            places,
+            outcomes,
+            number_of_kinds=len(Outcome),
+            shape=part.shape,
+            west=part.west,
+            north=part.north,
+            cell_size=part.cell_size,
+            reach=self._reach,
+        ).astype(np.int64)
+        near[list(SEEN)] += np.where(near[list(SEEN)] > 0, SEEN_RANK, 0)
+        commonest = near.argmax(axis=0).astype(np.int16)
+        self._state[window] = np.where(near.any(axis=0), commonest, GAP)
+
+    def map(self) -> CoverageMap:
+        """Return the map, cells outside the survey area left out."""
+        inside = inside_ring(self.cells, self._area)
+        return CoverageMap(cells=self.cells, state=np.where(inside, self._state, OUTSIDE_AREA))
 
 
 def write_coverage_geojson(
@@ -214,9 +239,8 @@ def _signed_area(ring: FloatArray) -> float:
     return float(0.5 * np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))
 
 
-def _pixels(records: Sequence[PixelRecord]) -> tuple[FloatArray, NDArray[np.uint8]]:
-    """Return the places (n, 2) and outcomes (n,) of the pixels that look at a known seabed."""
-    places = np.concatenate([record.true_position[..., :2].reshape(-1, 2) for record in records])
-    outcomes = np.concatenate([record.outcome.ravel() for record in records])
+def looked_at(record: PixelRecord) -> tuple[FloatArray, NDArray[np.uint8]]:
+    """Return places (n, 2) [m, local] and outcomes (n,) of the pixels that look at the seabed."""
+    places = record.true_position[..., :2].reshape(-1, 2)
     known = np.isfinite(places).all(axis=1)
-    return places[known], outcomes[known]
+    return places[known], record.outcome.ravel()[known]

@@ -5,11 +5,13 @@ from __future__ import annotations
 import io
 import zipfile
 import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from survey.cloud.points import PixelRecord, PointCloud
 from survey.cloud.raw import RawReadings
@@ -37,18 +39,37 @@ class FrameResult:
 
 
 def frame_bytes(result: FrameResult) -> bytes:
-    """Return the content of a frame's file: a zip of arrays, the same bytes for the same frame."""
-    arrays: dict[str, Any] = {}
-    for part, columns in (("bottom", result.bottom), ("surface", result.surface)):
-        arrays |= {f"{part}_{name}": column for name, column in columns.columns().items()}
-    for field in fields(PixelRecord):
-        arrays[f"pixel_{field.name}"] = getattr(result.record, field.name)
+    """Return the content of a frame's file: the same bytes for the same frame.
+
+    A zip of ``bottom.npy``, ``surface.npy``, ``pixel.npy`` and, where it was kept, ``raw.npy``.
+    Each holds one record whose fields are whole columns, and `numpy.load` reads it. Only the last
+    is deflated: of the others that would take a third off the size and double the reading time.
+    """
+    parts: dict[str, Mapping[str, Any]] = {
+        "bottom": result.bottom.columns(),
+        "surface": result.surface.columns(),
+        "pixel": {field.name: getattr(result.record, field.name) for field in fields(PixelRecord)},
+    }
     if result.raw is not None:
-        for field in fields(RawReadings):
-            arrays[f"raw_{field.name}"] = getattr(result.raw, field.name)
+        parts["raw"] = {
+            field.name: getattr(result.raw, field.name) for field in fields(RawReadings)
+        }
     content = io.BytesIO()
-    np.savez_compressed(content, **arrays)
+    with zipfile.ZipFile(content, "w") as archive:
+        for name, columns in parts.items():
+            member, packed = zipfile.ZipInfo(f"{name}.npy"), io.BytesIO()
+            np.save(packed, _record(columns))
+            way = zipfile.ZIP_DEFLATED if name == "raw" else zipfile.ZIP_STORED
+            archive.writestr(member, packed.getvalue(), way)
     return content.getvalue()
+
+
+def _record(columns: Mapping[str, Any]) -> NDArray[np.void]:
+    kinds = [(name, column.dtype, column.shape) for name, column in columns.items()]
+    record = np.zeros((), np.dtype(kinds, align=True))
+    for name, column in columns.items():
+        record[name] = column
+    return record
 
 
 def write_frame(path: Path, result: FrameResult) -> bytes:
@@ -73,7 +94,7 @@ def read_frame(path: Path) -> FrameResult:
                 surface=PointCloud(**_part(arrays, "surface")),
                 record=PixelRecord(**_part(arrays, "pixel")),
             )
-    except (zipfile.BadZipFile, zlib.error, EOFError, TypeError, ValueError) as fault:
+    except (zipfile.BadZipFile, zlib.error, EOFError, KeyError, TypeError, ValueError) as fault:
         raise ValueError(f"{path}: not a whole frame ({fault}). Delete it and run again") from None
 
 
@@ -83,10 +104,9 @@ def read_raw(path: Path) -> RawReadings | None:
     ``processing.keep_waveforms`` says whether a run keeps it.
     """
     with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
-        part = _part(arrays, "raw")
-    return RawReadings(**part) if part else None
+        return RawReadings(**_part(arrays, "raw")) if "raw" in arrays else None
 
 
-def _part(arrays: Any, prefix: str) -> dict[str, Any]:
-    start = len(prefix) + 1
-    return {name[start:]: arrays[name] for name in arrays.files if name.startswith(f"{prefix}_")}
+def _part(arrays: Mapping[str, NDArray[np.void]], name: str) -> dict[str, NDArray[Any]]:
+    record = arrays[name]
+    return {column: record[column] for column in record.dtype.names or ()}

@@ -1,26 +1,24 @@
-"""Gridded bathymetry: GeoTIFF."""
+"""Gridded bathymetry."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.points import PointClass, PointCloud
 from survey.products.cells import CellGrid
-from survey.products.writing import ProductError, require_read_back, whole_file
+from survey.products.writing import ProductError
 from terrain.map_frame import MapFrame
 
 FloatArray = NDArray[np.float64]
 SOLID_CLASSES = (PointClass.GROUND, PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT)
-BANDS = (("elevation", "m"), ("density", "1/m2"), ("standard_deviation", "m"))
-TILE = 256
+MOST_OVERVIEW_CELLS = 1_000_000
 
 
 @dataclass(frozen=True, kw_only=True)
-class ElevationGrid:
+class ElevationMap:
     """Seabed and land by cells, row 0 in the north.
 
     Parameters
@@ -29,14 +27,24 @@ class ElevationGrid:
         Where the cells lie on the map.
     elevation : array (rows, columns)
         Median elevation of the points in a cell [m], nan where there is none.
+    """
+
+    cells: CellGrid
+    elevation: FloatArray
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElevationGrid(ElevationMap):
+    """The same with what the points in the cells tell beside.
+
+    Parameters
+    ----------
     density : array (rows, columns)
         Points a square metre [1/m2].
     deviation : array (rows, columns)
         Standard deviation of their elevations, n - 1 [m], nan below two points.
     """
 
-    cells: CellGrid
-    elevation: FloatArray
     density: FloatArray
     deviation: FloatArray
 
@@ -58,13 +66,22 @@ def grid_elevation(cloud: PointCloud, map_frame: MapFrame, *, cell_size: float) 
     ProductError
         If the cloud has no such point, or the raster would be too large.
     """
-    on_map = map_frame.to_map(cloud.position[np.isin(cloud.classification, SOLID_CLASSES)])
+    on_map = solid_places(cloud, map_frame)
     if on_map.shape[0] == 0:
         raise ProductError(
             f"grid: none of the {len(cloud)} points is seabed, object or ground. "
             "See the outcomes of the pixels for why"
         )
-    cells = CellGrid.covering(on_map, cell_size=cell_size)
+    return gridded(on_map, CellGrid.covering(on_map, cell_size=cell_size))
+
+
+def solid_places(cloud: PointCloud, map_frame: MapFrame) -> FloatArray:
+    """Return the points of seabed, objects and dry ground (n, 3) [m, map]."""
+    return map_frame.to_map(cloud.position[np.isin(cloud.classification, SOLID_CLASSES)])
+
+
+def gridded(on_map: FloatArray, cells: CellGrid) -> ElevationGrid:
+    """Return places (n, 3), all inside, by cells [m, map]."""
     index = cells.index_of(on_map)
     order = np.lexsort((on_map[:, 2], index))
     count = np.bincount(index, minlength=cells.rows * cells.columns)
@@ -72,9 +89,42 @@ def grid_elevation(cloud: PointCloud, map_frame: MapFrame, *, cell_size: float) 
     return ElevationGrid(
         cells=cells,
         elevation=elevation.reshape(cells.shape),
-        density=count.reshape(cells.shape) / cell_size**2,
+        density=count.reshape(cells.shape) / cells.cell_size**2,
         deviation=deviation.reshape(cells.shape),
     )
+
+
+class Overview:
+    """A grid of at most a million cells, for pictures and meshes, from the parts of a larger one.
+
+    So many cells are taken together as are needed; of several the mean of the medians is taken.
+    """
+
+    def __init__(self, cells: CellGrid) -> None:
+        factor = int(np.ceil(np.sqrt(cells.rows * cells.columns / MOST_OVERVIEW_CELLS)))
+        self._fine, self._factor = cells, factor
+        self._cells = replace(
+            cells,
+            cell_size=cells.cell_size * factor,
+            rows=-(-cells.rows // factor),
+            columns=-(-cells.columns // factor),
+        )
+        self._sum, self._count = np.zeros((2, *self._cells.shape))
+
+    def add(self, grid: ElevationGrid) -> None:
+        """Add a part; what lies outside is left out."""
+        rows, columns = self._fine.window(grid.cells)
+        elevation = grid.elevation[grid.cells.window(self._fine)]
+        row, column = np.nonzero(np.isfinite(elevation))
+        place = (rows.start + row) // self._factor, (columns.start + column) // self._factor
+        np.add.at(self._sum, place, elevation[row, column])
+        np.add.at(self._count, place, 1.0)
+
+    def map(self) -> ElevationMap:
+        """Return it."""
+        empty = self._count == 0.0
+        elevation = np.where(empty, np.nan, self._sum / np.where(empty, 1.0, self._count))
+        return ElevationMap(cells=self._cells, elevation=elevation)
 
 
 def _cell_statistics(z: FloatArray, count: NDArray[np.intp]) -> tuple[FloatArray, FloatArray]:
@@ -92,33 +142,3 @@ def _cell_statistics(z: FloatArray, count: NDArray[np.intp]) -> tuple[FloatArray
     variance = (squares[several] - total[several] ** 2 / count[several]) / (count[several] - 1)
     deviation[several] = np.sqrt(np.maximum(variance, 0.0))
     return median, deviation
-
-
-def write_bathymetry_tif(path: Path, grid: ElevationGrid, map_frame: MapFrame) -> None:
-    """Write the grid as a tiled GeoTIFF: elevation, density, standard deviation, float32.
-
-    North is up, edges are whole multiples of the cell size, the CRS is compound, empty cells
-    are nan (in the density band 0).
-
-    Raises
-    ------
-    ReadBackError
-        If the file does not read back as written.
-    """
-    import rasterio
-
-    bands = np.stack([grid.elevation, grid.density, grid.deviation]).astype(np.float32)
-    profile = {
-        **{"driver": "GTiff", "dtype": "float32", "count": len(BANDS), "nodata": np.nan},
-        **{"height": grid.cells.rows, "width": grid.cells.columns},
-        **{"crs": rasterio.CRS.from_wkt(map_frame.crs.to_wkt())},
-        **{"transform": grid.cells.transform, "compress": "deflate", "predictor": 3},
-        **{"tiled": True, "blockxsize": TILE, "blockysize": TILE, "num_threads": 1},
-    }
-    with whole_file(path) as partial:
-        with rasterio.open(partial, "w", **profile) as file:
-            file.write(bands)
-            file.descriptions = tuple(name for name, _ in BANDS)
-            file.units = tuple(unit for _, unit in BANDS)
-        with rasterio.open(partial) as file:
-            require_read_back(path, "cells", np.array_equal(file.read(), bands, equal_nan=True))

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +16,7 @@ from numpy.typing import NDArray
 from survey.cloud.points import PointClass, PointCloud
 from survey.flight.pose import Frame
 from survey.products.gps_time import adjusted_gps_time
-from survey.products.ply_file import require_points
+from survey.products.ply_file import require_finite, require_points
 from survey.products.writing import require_read_back, whole_file
 from terrain.map_frame import MapFrame
 
@@ -23,6 +26,8 @@ if TYPE_CHECKING:
 COORDINATE_STEP = 0.001
 SCAN_ANGLE_STEP_DEG = 0.006
 MAX_INTENSITY = 65535
+STANDARD_BYTES = 30  # of point format 6
+POINTS_AT_ONCE = 1_000_000
 EXTRA_STEPS_PER_METRE = 1024
 """Extra coordinates are kept to 1/1024 m: their low bits are zero, which compresses well."""
 
@@ -88,21 +93,73 @@ def write_laz(
     ReadBackError
         If the file does not read back as written.
     """
+    with laz_file(path, map_frame, start_utc=start_utc, frames=frames) as add:
+        add(cloud)
+
+
+@contextmanager
+def laz_file(
+    path: Path, map_frame: MapFrame, *, start_utc: datetime, frames: Sequence[Frame]
+) -> Iterator[Callable[[PointCloud], None]]:
+    """Give a function that adds points to a LAZ file; see `write_laz`."""
     import laspy
 
-    require_points(path, cloud)
-    las = laspy.LasData(_header(map_frame, start_utc))
-    on_map = map_frame.to_map(cloud.position)
-    las.x, las.y, las.z = on_map[:, 0], on_map[:, 1], on_map[:, 2]
-    _fill_standard_fields(las, cloud, frames)
-    las.gps_time = adjusted_gps_time(start_utc, cloud.time)
-    for name, values in _extra_columns(cloud, map_frame).items():
-        las[name] = values
+    header = _header(map_frame, start_utc)
+    views = Views.of(frames)
+    count = checksum = 0
     with whole_file(path) as partial:
-        las.write(str(partial))
-        again = laspy.read(str(partial))
-        same = again.points.array.tobytes() == las.points.array.tobytes()
-        require_read_back(path, "points", same)
+        with laspy.open(str(partial), mode="w", header=header) as file:
+
+            def add(cloud: PointCloud) -> None:
+                nonlocal count, checksum
+                if len(cloud) == 0:
+                    return
+                require_finite(path, cloud)
+                points = _records(header, cloud, map_frame, start_utc, views)
+                file.write_points(points)
+                count, checksum = count + len(cloud), _checksum(points, checksum)
+
+            yield add
+            require_points(path, count)
+        require_read_back(path, "points", _count_and_checksum(partial) == (count, checksum))
+
+
+def _records(
+    header: laspy.LasHeader,
+    cloud: PointCloud,
+    map_frame: MapFrame,
+    start_utc: datetime,
+    views: Views,
+) -> laspy.ScaleAwarePointRecord:
+    import laspy
+
+    points = laspy.ScaleAwarePointRecord.zeros(len(cloud), header=header)
+    on_map = map_frame.to_map(cloud.position)
+    points.x, points.y, points.z = on_map[:, 0], on_map[:, 1], on_map[:, 2]
+    _fill_standard_fields(points, cloud, views)
+    points.gps_time = adjusted_gps_time(start_utc, cloud.time)
+    for name, values in _extra_columns(cloud, map_frame).items():
+        points[name] = values
+    return points
+
+
+def _count_and_checksum(path: Path) -> tuple[int, int]:
+    """Read the standard fields of all points back; others are read by nobody but for their size."""
+    import laspy
+
+    wanted = laspy.DecompressionSelection.all() & ~laspy.DecompressionSelection.ALL_EXTRA_BYTES
+    count = checksum = 0
+    with laspy.open(str(path), decompression_selection=wanted) as file:
+        for points in file.chunk_iterator(POINTS_AT_ONCE):
+            count, checksum = count + len(points), _checksum(points, checksum)
+    return count, checksum
+
+
+def _checksum(points: Any, before: int) -> int:
+    """Return the CRC-32 of the standard fields of records, after that of the records before."""
+    records = points.array
+    standard = records.view(np.uint8).reshape(records.size, -1)[:, :STANDARD_BYTES]
+    return crc32(standard.tobytes(), before)
 
 
 def read_laz(path: Path, map_frame: MapFrame, *, start_utc: datetime) -> PointCloud:
@@ -158,12 +215,12 @@ def _header(map_frame: MapFrame, start_utc: datetime) -> laspy.LasHeader:
     return header
 
 
-def _fill_standard_fields(las: Any, cloud: PointCloud, frames: Sequence[Frame]) -> None:
+def _fill_standard_fields(las: Any, cloud: PointCloud, views: Views) -> None:
     las.synthetic = np.ones(len(cloud), dtype=np.uint8)
     las.classification = cloud.classification
     las.intensity = np.clip(np.rint(cloud.counts), 0, MAX_INTENSITY).astype(np.uint16)
     las.point_source_id = cloud.line + np.uint16(1)
-    las.scan_angle = np.rint(scan_angle_deg(cloud, frames) / SCAN_ANGLE_STEP_DEG).astype(np.int16)
+    las.scan_angle = np.rint(views.scan_angle_deg(cloud) / SCAN_ANGLE_STEP_DEG).astype(np.int16)
     numbers, totals = np.ones((2, len(cloud)), dtype=np.uint8)
     for point_class, (number, total) in RETURNS.items():
         numbers[cloud.classification == point_class] = number
@@ -171,18 +228,40 @@ def _fill_standard_fields(las: Any, cloud: PointCloud, frames: Sequence[Frame]) 
     las.return_number, las.number_of_returns = numbers, totals
 
 
-def scan_angle_deg(cloud: PointCloud, frames: Sequence[Frame]) -> NDArray[np.float64]:
-    """Return the angle off nadir across the track, positive to the right (n,) [deg].
+@dataclass(frozen=True, kw_only=True)
+class Views:
+    """Where each flash was measured to be, by its number.
 
-    Taken to the uncorrected point, hence the direction in air, from the measured pose of its frame.
+    Parameters
+    ----------
+    position : array (flashes, 3)
+        [m, local].
+    heading : array (flashes,)
+        [rad].
     """
-    index = {frame.index: number for number, frame in enumerate(frames)}
-    of_point = np.array([index[number] for number in cloud.frame.tolist()], dtype=np.intp)
-    sensor = np.array([frame.measured.position for frame in frames])[of_point]
-    heading = np.array([frame.measured.heading for frame in frames])[of_point]
-    ray = cloud.uncorrected - sensor
-    right = ray[:, 0] * np.cos(heading) - ray[:, 1] * np.sin(heading)
-    return np.asarray(np.degrees(np.arctan2(right, -ray[:, 2])))
+
+    position: NDArray[np.float64]
+    heading: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, frames: Sequence[Frame]) -> Views:
+        """Return the views of some frames; nan for numbers between that no frame has."""
+        number = np.array([frame.index for frame in frames], dtype=np.intp)
+        position = np.full((number.max() + 1, 3), np.nan)
+        position[number] = [frame.measured.position for frame in frames]
+        heading = np.full(len(position), np.nan)
+        heading[number] = [frame.measured.heading for frame in frames]
+        return cls(position=position, heading=heading)
+
+    def scan_angle_deg(self, cloud: PointCloud) -> NDArray[np.float64]:
+        """Return the angle off nadir across the track, positive to the right (n,) [deg].
+
+        Taken to the uncorrected point, hence the direction in air.
+        """
+        heading = self.heading[cloud.frame]
+        ray = cloud.uncorrected - self.position[cloud.frame]
+        right = ray[:, 0] * np.cos(heading) - ray[:, 1] * np.sin(heading)
+        return np.asarray(np.degrees(np.arctan2(right, -ray[:, 2])))
 
 
 def _extra_columns(cloud: PointCloud, map_frame: MapFrame) -> dict[str, NDArray[Any]]:

@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.products.depth_colours import depth_colours
-from survey.products.grids import ElevationGrid
+from survey.products.grids import ElevationMap
 from survey.products.writing import ProductError, require_read_back, whole_file
 from terrain.map_frame import MapFrame
 
 FloatArray = NDArray[np.float64]
 
 
-def grid_surface(grid: ElevationGrid, map_frame: MapFrame) -> tuple[FloatArray, NDArray[np.int64]]:
+def grid_surface(grid: ElevationMap, map_frame: MapFrame) -> tuple[FloatArray, NDArray[np.int64]]:
     """Return vertices (n, 3) in the local frame and triangles (m, 3) between filled cells.
 
     Vertices are the centres of the filled cells. Four filled neighbours make two triangles,
@@ -45,7 +45,7 @@ def grid_surface(grid: ElevationGrid, map_frame: MapFrame) -> tuple[FloatArray, 
     return map_frame.to_local(on_map), faces
 
 
-def has_triangles(grid: ElevationGrid) -> bool:
+def has_triangles(grid: ElevationMap) -> bool:
     """Tell whether any three neighbouring cells are filled."""
     return bool(((_squares(np.isfinite(grid.elevation)) >= 0).sum(axis=1) >= 3).any())
 
@@ -58,7 +58,7 @@ def _squares(filled: NDArray[np.bool_]) -> NDArray[np.int64]:
 
 
 def write_bathymetry_glb(
-    path: Path, grid: ElevationGrid, map_frame: MapFrame, *, water_level: float
+    path: Path, grid: ElevationMap, map_frame: MapFrame, *, water_level: float
 ) -> None:
     """Write the grid as a mesh coloured by depth, in metres, y up as glTF has it.
 

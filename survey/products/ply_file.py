@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from os import SEEK_END
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
+from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +41,8 @@ PLY_RECORD = np.dtype(
         ("cause", "u1"),
     ]
 )
+COUNT_DIGITS = 20
+HEADER_BYTES, BYTES_AT_ONCE = 1 << 14, 1 << 24
 PLY_TYPES = {"<f8": "double", "<f4": "float", "<u4": "uint", "<u2": "ushort", "|u1": "uchar"}
 COLUMNS = {
     "true_elevation": "true_elevation",
@@ -70,13 +76,17 @@ NORMALS = {"true_normal": "true_normal_"}
 """And of those that are directions."""
 
 
-def require_points(path: Path, cloud: PointCloud) -> None:
-    """Raise `ProductError` if a cloud has no points or a position that is not finite."""
-    if len(cloud) == 0:
+def require_points(path: Path, count: int) -> None:
+    """Raise `ProductError` if a cloud has no points."""
+    if count == 0:
         raise ProductError(
             f"{path.name}: points: the cloud is empty. "
             "See the outcomes of the pixels for the reason (depth, water, gate or gaps)"
         )
+
+
+def require_finite(path: Path, cloud: PointCloud) -> None:
+    """Raise `ProductError` if a position is not finite."""
     bad = np.flatnonzero(~np.isfinite(cloud.position).all(axis=1))
     if bad.size:
         raise ProductError(
@@ -106,13 +116,30 @@ def write_ply(path: Path, cloud: PointCloud, map_frame: MapFrame) -> None:
     ReadBackError
         If the file does not read back as written.
     """
-    require_points(path, cloud)
-    records = _records(cloud, map_frame)
+    with ply_file(path, map_frame) as add:
+        add(cloud)
+
+
+@contextmanager
+def ply_file(path: Path, map_frame: MapFrame) -> Iterator[Callable[[PointCloud], None]]:
+    """Give a function that adds points to a PLY file; see `write_ply`."""
+    count = checksum = 0
     with whole_file(path) as partial:
         with partial.open("wb") as file:
-            file.write(_header(len(cloud), map_frame).encode("ascii"))
-            records.tofile(file)
-        require_read_back(path, "points", _read(partial)[1].tobytes() == records.tobytes())
+            file.write(_header(count, map_frame))
+
+            def add(cloud: PointCloud) -> None:
+                nonlocal count, checksum
+                require_finite(path, cloud)
+                content = _records(cloud, map_frame).tobytes()
+                file.write(content)
+                count, checksum = count + len(cloud), crc32(content, checksum)
+
+            yield add
+            require_points(path, count)
+            file.seek(0)
+            file.write(_header(count, map_frame))
+        require_read_back(path, "points", _count_and_checksum(partial) == (count, checksum))
 
 
 def read_ply(path: Path) -> tuple[PointCloud, MapFrame]:
@@ -158,7 +185,8 @@ def _triple(records: NDArray[np.void], prefix: str) -> NDArray[np.float64]:
     return np.stack([records[f"{prefix}{axis}"] for axis in "xyz"], axis=1)
 
 
-def _header(count: int, map_frame: MapFrame) -> str:
+def _header(count: int, map_frame: MapFrame) -> bytes:
+    """Return a header that is equally long for any count."""
     properties = (
         f"property {PLY_TYPES[PLY_RECORD[name].str]} {name}" for name in PLY_RECORD.names or ()
     )
@@ -169,25 +197,43 @@ def _header(count: int, map_frame: MapFrame) -> str:
         f"comment vertical_epsg {map_frame.vertical_epsg}",
         f"comment origin_easting {map_frame.easting!r}",
         f"comment origin_northing {map_frame.northing!r}",
+        "comment ".ljust(COUNT_DIGITS + len("comment ") - len(str(count)), "-"),
         f"element vertex {count}",
         *properties,
         "end_header",
     )
-    return "\n".join(lines) + "\n"
+    return ("\n".join(lines) + "\n").encode("ascii")
+
+
+def _count_and_checksum(path: Path) -> tuple[int, int]:
+    checksum = 0
+    with path.open("rb") as file:
+        _, count = _read_header(path, file)
+        while content := file.read(BYTES_AT_ONCE):
+            checksum = crc32(content, checksum)
+    return count, checksum
 
 
 def _read(path: Path) -> tuple[dict[str, str], NDArray[np.void]]:
-    content = path.read_bytes()
-    text, mark, body = content.partition(b"end_header\n")
+    with path.open("rb") as file:
+        comments, _ = _read_header(path, file)
+        return comments, np.fromfile(file, dtype=PLY_RECORD)
+
+
+def _read_header(path: Path, file: BinaryIO) -> tuple[dict[str, str], int]:
+    """Return comments and count, and leave the file at the first point."""
+    text, mark, _ = file.read(HEADER_BYTES).partition(b"end_header\n")
     lines = [line.split() for line in text.decode("ascii", "replace").splitlines()]
     comments = {line[1]: line[2] for line in lines if line[:1] == ["comment"] and len(line) == 3}
     names = tuple(line[2] for line in lines if line[:1] == ["property"] and len(line) == 3)
     counts = [int(line[2]) for line in lines if line[:2] == ["element", "vertex"]]
     if not mark or names != PLY_RECORD.names or len(counts) != 1:
         raise ProductError(f"{path}: header: not that of a bathyflash PLY. Use bathyflash run")
-    if len(body) != counts[0] * PLY_RECORD.itemsize:
+    start = file.seek(len(text) + len(mark))
+    points = (file.seek(0, SEEK_END) - start) / PLY_RECORD.itemsize
+    if points != counts[0]:
         raise ProductError(
-            f"{path}: points: {counts[0]} announced, {len(body) / PLY_RECORD.itemsize:.1f} there. "
-            "Write the file again"
+            f"{path}: points: {counts[0]} announced, {points:.1f} there. Write the file again"
         )
-    return comments, np.frombuffer(body, dtype=PLY_RECORD)
+    file.seek(start)
+    return comments, counts[0]

@@ -8,13 +8,11 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from survey.products.coverage import CoverageMap
-from survey.products.grids import ElevationGrid
+from survey.products.grids import ElevationMap
 from survey.products.reach import reach_sentence
 from survey.products.report_figures import depth_map, error_histogram, outcome_map
+from survey.products.tally import ErrorTally
 from survey.products.writing import write_whole
 
 ROWS = (
@@ -62,9 +60,9 @@ def write_report(
     title: str,
     description: str,
     metrics: Mapping[str, Any],
-    grid: ElevationGrid,
+    grid: ElevationMap,
     coverage: CoverageMap,
-    errors: NDArray[np.float64],
+    errors: ErrorTally,
     water_level: float,
 ) -> None:
     """Write a self-contained HTML page: what was flown, key figures, two maps, a histogram.
@@ -76,13 +74,13 @@ def write_report(
     title, description : str
         Of the mission, plain text.
     metrics : mapping
-        From `survey.products.accuracy.metrics`.
-    grid : ElevationGrid
+        From `survey.products.accuracy.Accuracy`.
+    grid : ElevationMap
         Gridded bathymetry.
     coverage : CoverageMap
         What became of the bottom.
-    errors : array (n,)
-        Elevation errors of the bottom points [m], from `elevation_errors`.
+    errors : ErrorTally
+        Elevation errors of the bottom points [m].
     water_level : float
         In the vertical datum [m].
     """
@@ -130,12 +128,12 @@ def _missed(metrics: Mapping[str, Any]) -> str:
     return f"Of {metrics['pixels_wet']} wet pixels {sum(missed.values())} missed it: {causes}."
 
 
-def _errors(errors: NDArray[np.float64]) -> list[str]:
-    if errors.size == 0:
+def _errors(errors: ErrorTally) -> list[str]:
+    if errors.count == 0:
         return []
     return [
         "<h2>Error of the bottom points</h2>",
-        f"<p>{errors.size} points against the true seabed at the measured place; "
+        f"<p>{errors.count} points against the true seabed at the measured place; "
         "the outermost bins hold all that is further off.</p>",
         _image(error_histogram(errors), "histogram of errors"),
     ]

@@ -6,13 +6,13 @@ from io import BytesIO
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from survey.cloud.points import Outcome
 from survey.products.cells import CellGrid
 from survey.products.coverage import GAP, OUTSIDE_AREA, CoverageMap
 from survey.products.depth_colours import COLOURS, LAND, depth_range
-from survey.products.grids import ElevationGrid
+from survey.products.grids import ElevationMap
+from survey.products.tally import ErrorTally
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 DOTS_PER_INCH = 110
 HISTOGRAM_BINS = 50
+MOST_PICTURE_CELLS = 2000  # along a side
 STATE_LOOKS = {
     Outcome.FOUND: ("bottom found", "#0072b2"),
     Outcome.DRY: ("land", LAND),
@@ -34,7 +35,7 @@ STATE_LOOKS = {
 """Words and colours (Okabe and Ito 2008, told apart by the colour-blind)."""
 
 
-def depth_map(grid: ElevationGrid, *, water_level: float) -> bytes:
+def depth_map(grid: ElevationMap, *, water_level: float) -> bytes:
     """Return a map of depth below the water level, land in sand colour."""
     from matplotlib import colormaps
 
@@ -64,14 +65,15 @@ def outcome_map(coverage: CoverageMap) -> bytes:
 
     figure, axes = _map_axes(coverage.cells)
     inside = coverage.state != OUTSIDE_AREA
-    handles = []
+    handles, step = [], -(-max(coverage.state.shape) // MOST_PICTURE_CELLS)
     for state, (words, colour) in STATE_LOOKS.items():
         here = coverage.state == state
         if here.any():
             share = 100.0 * here.sum() / inside.sum()
             handles.append(Patch(color=colour, label=f"{words} ({share:.1f} %)"))
+            shown = here[::step, ::step]
             axes.imshow(
-                np.ma.masked_array(np.ones(here.shape), ~here),
+                np.ma.masked_array(np.ones(shown.shape), ~shown),
                 cmap=ListedColormap([colour]),
                 extent=coverage.cells.extent,
                 interpolation="nearest",
@@ -80,12 +82,12 @@ def outcome_map(coverage: CoverageMap) -> bytes:
     return _png(figure)
 
 
-def error_histogram(errors: NDArray[np.float64]) -> bytes:
-    """Return a histogram of elevation errors (n,) [m]; the end bins hold all that is beyond."""
+def error_histogram(errors: ErrorTally) -> bytes:
+    """Return a histogram of elevation errors [m]; the end bins hold all that is beyond."""
     figure, axes = _figure(height=3.2)
-    limit = np.ceil(20.0 * np.percentile(np.abs(errors), 95.0) + 1e-9) / 10.0
+    limit = np.ceil(20.0 * errors.quantile_of_absolute(0.95) + 1e-9) / 10.0
     edges = np.linspace(-limit, limit, HISTOGRAM_BINS + 1)
-    axes.hist(np.clip(errors, -limit, limit), bins=edges.tolist(), color="#0072b2")
+    axes.stairs(errors.histogram(edges), edges, fill=True, color="#0072b2")
     axes.axvline(0.0, color="#303030", linewidth=0.8)
     axes.set_xlim(-limit, limit)
     axes.set_xlabel("measured less true elevation [m]")

@@ -2,37 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from datetime import datetime
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import Outcome, PointClass, PointCloud
-from survey.cloud.stitch import stitched
+from survey.cloud.points import PointCloud
 from survey.flight.pose import Frame
 from survey.optics.water import WaterColumn
-from survey.products.accuracy import BOTTOM_CLASSES, elevation_errors, metrics
-from survey.products.coverage import coverage_map, surveyed_hull, write_coverage_geojson
+from survey.products.accuracy import Accuracy
+from survey.products.coverage import CoverageTally, write_coverage_geojson
+from survey.products.first_look import FirstLook
 from survey.products.frame_file import FrameResult
-from survey.products.grids import grid_elevation, write_bathymetry_tif
+from survey.products.grids import Overview, gridded, solid_places
 from survey.products.json_file import write_json
-from survey.products.las_file import write_laz
+from survey.products.las_file import laz_file
+from survey.products.map_tiles import map_tiles
 from survey.products.mesh_files import has_triangles, write_bathymetry_glb
-from survey.products.pixels import explain_empty
-from survey.products.ply_file import write_ply
+from survey.products.ply_file import ply_file
+from survey.products.read_ahead import read_ahead
 from survey.products.report import write_report
-from survey.products.substrates import substrate_metrics
+from survey.products.tif_file import bathymetry_tif
+from survey.products.tile_points import TilePoints, tile_points
 from survey.products.track_files import TrackFormat, write_trajectory_files
 from survey.products.trajectory_file import write_trajectory_csv
-from survey.products.uncertainty_check import uncertainty_metrics
-from survey.products.writing import ProductError
+from survey.products.uncertainty_check import UncertaintyTally
+from survey.progress import Unwatched, Watcher
+from terrain.map_frame import MapFrame
 from terrain.seabed import Seabed
 
 FloatArray = NDArray[np.float64]
+ReadFrame = Callable[[int], FrameResult]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,112 +83,183 @@ class ProductSettings:
     deviations: tuple[float, ...]
     water: WaterColumn
 
+    @property
+    def reach(self) -> float:
+        """Half the diagonal of a pixel on the bottom, doubled for gaps between them [m]."""
+        return self.pixel_spacing * 2**0.5
+
 
 def write_products(
     folder: Path,
     *,
-    results: Sequence[FrameResult],
+    read: ReadFrame,
     frames: Sequence[Frame],
     seabed: Seabed,
     settings: ProductSettings,
+    watch: Watcher | None = None,
 ) -> dict[str, Any]:
     """Stitch the frames, write every product into the run folder, and return the metrics.
 
+    The frames are read twice: first to learn where they lie and what their pixels saw, then tile by
+    tile of the map, and a tile goes into every product before the next is begun. So memory holds a
+    tile and not the mission. Points are ordered by tile, see `map_tiles`, and in it by frame, row
+    and column.
+
     A cloud without points (the water surface of a flight over land) has no file, nor has a mesh
     without triangles (of a few false bottoms far apart).
+
+    Parameters
+    ----------
+    folder : Path
+        Run folder.
+    read : callable
+        Returns a frame by its number; called from other threads.
+    frames : sequence of Frame
+        Those to take.
+    seabed : Seabed
+        The true one.
+    settings : ProductSettings
+    watch : Watcher, optional
+        Is told of the progress.
 
     Raises
     ------
     ProductError
         When no bottom and no land was found; the text says why.
     """
-    records = [result.record for result in results]
-    bottom = stitched([result.bottom for result in results], cell_size=settings.thinning)
-    surface = stitched([result.surface for result in results], cell_size=settings.thinning)
-    _require_bottom(bottom, results)
-    _write_clouds(folder, bottom, surface, frames, seabed, settings)
-    grid = grid_elevation(bottom, seabed.map_frame, cell_size=settings.grid)
-    write_bathymetry_tif(folder / "bathymetry.tif", grid, seabed.map_frame)
-    if has_triangles(grid):
-        write_bathymetry_glb(
-            folder / "bathymetry.glb", grid, seabed.map_frame, water_level=settings.water_level
-        )
-    area = surveyed_hull(records) if settings.survey_area is None else settings.survey_area
-    cell = max(settings.grid, settings.pixel_spacing)
-    coverage = coverage_map(
-        records,
-        seabed.map_frame,
-        survey_area=area,
-        cell_size=settings.grid,
-        reach=settings.pixel_spacing * 2**0.5,
+    map_frame, watch = seabed.map_frame, watch or Unwatched()
+    look = _first_look(read, frames, map_frame, watch)
+    look.require_bottom()
+    area = look.hull.ring() if settings.survey_area is None else settings.survey_area
+    raster = look.raster(cell_size=settings.grid)
+    overview, substrates = Overview(raster), look.substrates
+    coverage = CoverageTally(
+        survey_area=area + map_frame.origin[:2], cell_size=settings.grid, reach=settings.reach
     )
-    write_coverage_geojson(folder / "coverage.geojson", coverage, seabed.map_frame)
-    found = metrics(
-        bottom=bottom,
-        surface=surface,
-        records=records,
-        elevation_at=seabed.elevation_at,
+    accuracy = Accuracy(
         water_level=settings.water_level,
         survey_area=area,
-        cell_size=cell,
-        water=settings.water,
+        cell_size=max(settings.grid, settings.pixel_spacing),
     )
-    found |= uncertainty_metrics(
-        bottom,
+    uncertainty = UncertaintyTally(
         frames=frames,
         pixel_tangent=settings.pixel_tangent,
         refractive_index=settings.water.refractive_index,
     )
-    found["substrates"] = substrate_metrics(bottom, results, seabed.substrate_names)
+    with (
+        _point_files(folder, look, frames, map_frame, settings) as add_points,
+        bathymetry_tif(folder / "bathymetry.tif", raster, map_frame) as add_cells,
+    ):
+        for part in _parts(look, read, frames, map_frame, settings, watch):
+            grid = gridded(solid_places(part.bottom, map_frame), part.tile.cells)
+            add_points(part)
+            add_cells(grid)
+            overview.add(grid)
+            coverage.add(part.looked_at, part.outcomes, part.tile.cells)
+            accuracy.add(part.bottom, part.surface)
+            uncertainty.add(part.bottom)
+            substrates.add_points(part.bottom)
+    found = accuracy.metrics(
+        pixels=look.pixels, elevation_at=seabed.elevation_at, water=settings.water
+    )
+    found |= uncertainty.metrics()
+    found["substrates"] = substrates.metrics(seabed.substrate_names)
     write_json(folder / "metrics.json", found)
+    _write_tracks(folder, frames, map_frame, settings)
+    if has_triangles(overview.map()):
+        write_bathymetry_glb(
+            folder / "bathymetry.glb", overview.map(), map_frame, water_level=settings.water_level
+        )
+    write_coverage_geojson(folder / "coverage.geojson", coverage.map(), map_frame)
     write_report(
         folder / "report.html",
         title=settings.title,
         description=settings.description,
         metrics=found,
-        grid=grid,
-        coverage=coverage,
-        errors=elevation_errors(bottom.select(np.isin(bottom.classification, BOTTOM_CLASSES))),
+        grid=overview.map(),
+        coverage=coverage.map(),
+        errors=accuracy.bottom.errors,
         water_level=settings.water_level,
     )
     return found
 
 
-def _require_bottom(bottom: PointCloud, results: Sequence[FrameResult]) -> None:
-    """Raise unless some bottom or land was truly found: a false echo alone is no seabed."""
-    records = [result.record for result in results]
-    outcome = np.concatenate([record.outcome.ravel() for record in records])
-    dry = (outcome == Outcome.DRY).any() and (bottom.classification == PointClass.GROUND).any()
-    if not dry and not (outcome == Outcome.FOUND).any():
-        raise ProductError(explain_empty(records))
+def _first_look(
+    read: ReadFrame, frames: Sequence[Frame], map_frame: MapFrame, watch: Watcher
+) -> FirstLook:
+    look = FirstLook(map_frame)
+    watch.writing(2 * len(frames))
+    for result in read_ahead(read, (frame.index for frame in frames)):
+        look.add(result)
+        watch.written(1)
+    return look
 
 
-def _write_clouds(
-    folder: Path,
-    bottom: PointCloud,
-    surface: PointCloud,
+def _parts(
+    look: FirstLook,
+    read: ReadFrame,
     frames: Sequence[Frame],
-    seabed: Seabed,
+    map_frame: MapFrame,
     settings: ProductSettings,
-) -> None:
-    for name, cloud in (("bottom", bottom), ("water_surface", surface)):
-        if len(cloud) == 0:
-            continue
-        write_ply(folder / f"{name}.ply", cloud, seabed.map_frame)
-        write_laz(
-            folder / f"{name}.laz",
-            cloud,
-            seabed.map_frame,
-            start_utc=settings.start_utc,
-            frames=frames,
+    watch: Watcher,
+) -> Iterator[TilePoints]:
+    """Yield what the frames hold tile by tile."""
+    tiles = list(
+        map_tiles(
+            extents=look.extents,
+            points=look.points,
+            lattice=look.raster(cell_size=settings.grid),
+            margin=max(settings.thinning, settings.reach) + settings.grid,
         )
-    write_trajectory_csv(
-        folder / "trajectory.csv", frames, [frame.measured for frame in frames], seabed.map_frame
     )
+    needed = [[frames[number].index for number in tile.frames] for tile in tiles]
+    watch.writing(len(frames) + sum(map(len, needed)))
+    results = read_ahead(read, chain.from_iterable(needed))
+    for tile, numbers in zip(tiles, needed, strict=True):
+        here = islice(results, len(numbers))
+        yield tile_points(tile, here, thinning=settings.thinning, map_frame=map_frame)
+        watch.written(len(numbers))
+
+
+@contextmanager
+def _point_files(
+    folder: Path,
+    look: FirstLook,
+    frames: Sequence[Frame],
+    map_frame: MapFrame,
+    settings: ProductSettings,
+) -> Iterator[Callable[[TilePoints], None]]:
+    """Give a function that adds a tile to the point files."""
+
+    def cloud_files(name: str) -> list[Callable[[PointCloud], None]]:
+        ply = ply_file(folder / f"{name}.ply", map_frame)
+        laz = laz_file(
+            folder / f"{name}.laz", map_frame, start_utc=settings.start_utc, frames=frames
+        )
+        return [files.enter_context(ply), files.enter_context(laz)]
+
+    with ExitStack() as files:
+        bottom = cloud_files("bottom")
+        surface = cloud_files("water_surface") if look.surface_points else []
+
+        def add(part: TilePoints) -> None:
+            for add_cloud in bottom:
+                add_cloud(part.bottom)
+            for add_cloud in surface:
+                add_cloud(part.surface)
+
+        yield add
+
+
+def _write_tracks(
+    folder: Path, frames: Sequence[Frame], map_frame: MapFrame, settings: ProductSettings
+) -> None:
+    measured = [frame.measured for frame in frames]
+    write_trajectory_csv(folder / "trajectory.csv", frames, measured, map_frame)
     write_trajectory_files(
         folder,
         frames,
-        seabed.map_frame,
+        map_frame,
         formats=settings.trajectory_files,
         start_utc=settings.start_utc,
         deviations=settings.deviations,

@@ -2,66 +2,83 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from survey.cloud.points import Outcome, PointCloud
-from survey.products.accuracy import BOTTOM_CLASSES, elevation_errors
+from survey.products.accuracy import BOTTOM_CLASSES
 from survey.products.frame_file import FrameResult
+from survey.products.pixels import share
 from terrain.substrate import UNLABELLED
 
 DECIMALS = 6
+CODES = 256
 
 
-def substrate_metrics(
-    bottom: PointCloud, results: Sequence[FrameResult], names: Mapping[int, str]
-) -> dict[str, dict[str, Any]]:
-    """Return what was found on every substrate, by its name; None where there is no such point.
+class SubstrateTally:
+    """Counts pixels and points by substrate."""
 
-    ================  ==========================================================================
-    code              in the points' column ``substrate``
-    pixels_wet        wet pixels that truly look at it, in all frames
-    found_fraction    share of these whose bottom was found
-    points_bottom     its points of classes 40 and 43
-    bias_m, rmse_m    of these points, measured less true elevation
-    ================  ==========================================================================
+    def __init__(self) -> None:
+        self._wet, self._found, self._points, self._known = np.zeros((4, CODES), np.int64)
+        self._errors, self._squares = np.zeros((2, CODES))
 
-    Parameters
-    ----------
-    bottom : PointCloud
-        Stitched.
-    results : sequence of FrameResult
-        Of all frames, a bottom point for every pixel.
-    names : mapping
-        Name of every code; what has no label counts as ``unlabelled``.
-    """
-    seen = np.concatenate([result.bottom.substrate for result in results])
-    depth = np.concatenate([result.record.true_depth.ravel() for result in results])
-    outcome = np.concatenate([result.record.outcome.ravel() for result in results])
-    solid = bottom.select(np.isin(bottom.classification, BOTTOM_CLASSES))
-    found: dict[str, dict[str, Any]] = {}
-    for code, name in sorted({**names, UNLABELLED: "unlabelled"}.items()):
-        here = (seen == code) & (depth > 0.0)
-        points = solid.select(solid.substrate == code)
-        if here.any() or len(points) > 0:
-            share = float((outcome[here] == Outcome.FOUND).mean()) if here.any() else None
-            found[name] = {
+    def add_frame(self, result: FrameResult) -> None:
+        """Add a frame that has a bottom point for every pixel."""
+        wet = result.record.true_depth.ravel() > 0.0
+        seen, outcome = result.bottom.substrate[wet], result.record.outcome.ravel()[wet]
+        self._wet += np.bincount(seen, minlength=CODES)
+        self._found += np.bincount(seen[outcome == Outcome.FOUND], minlength=CODES)
+
+    def add_points(self, bottom: PointCloud) -> None:
+        """Add stitched points."""
+        solid = np.isin(bottom.classification, BOTTOM_CLASSES)
+        code = bottom.substrate[solid]
+        errors = (bottom.position[:, 2] - bottom.true_elevation)[solid]
+        known = np.isfinite(errors)
+        self._points += np.bincount(code, minlength=CODES)
+        self._known += np.bincount(code[known], minlength=CODES)
+        self._errors += np.bincount(code[known], errors[known], CODES)
+        self._squares += np.bincount(code[known], errors[known] ** 2, CODES)
+
+    def metrics(self, names: Mapping[int, str]) -> dict[str, dict[str, Any]]:
+        """Return what was found on every substrate, by its name; None where there is no such point.
+
+        ================  ======================================================================
+        code              in the points' column ``substrate``
+        pixels_wet        wet pixels that truly look at it, in all frames
+        found_fraction    share of these whose bottom was found
+        points_bottom     its points of classes 40 and 43
+        bias_m, rmse_m    of these points, measured less true elevation
+        ================  ======================================================================
+
+        Parameters
+        ----------
+        names : mapping
+            Name of every code; what has no label counts as ``unlabelled``.
+        """
+        return {
+            name: {
                 "code": code,
-                "pixels_wet": int(here.sum()),
-                "found_fraction": share if share is None else round(share, DECIMALS),
-                "points_bottom": len(points),
-                **_errors(points),
+                "pixels_wet": int(self._wet[code]),
+                "found_fraction": _rounded(share(int(self._found[code]), int(self._wet[code]))),
+                "points_bottom": int(self._points[code]),
+                **self._error_metrics(code),
             }
-    return found
+            for code, name in sorted({**names, UNLABELLED: "unlabelled"}.items())
+            if self._wet[code] > 0 or self._points[code] > 0
+        }
+
+    def _error_metrics(self, code: int) -> dict[str, float | None]:
+        count = self._known[code]
+        if count == 0:
+            return {"bias_m": None, "rmse_m": None}
+        return {
+            "bias_m": _rounded(float(self._errors[code] / count)),
+            "rmse_m": _rounded(float(np.sqrt(self._squares[code] / count))),
+        }
 
 
-def _errors(points: PointCloud) -> dict[str, float | None]:
-    errors = elevation_errors(points)
-    if errors.size == 0:
-        return {"bias_m": None, "rmse_m": None}
-    return {
-        "bias_m": round(float(errors.mean()), DECIMALS),
-        "rmse_m": round(float(np.sqrt(np.mean(errors**2))), DECIMALS),
-    }
+def _rounded(value: float | None) -> float | None:
+    return None if value is None else round(value, DECIMALS)

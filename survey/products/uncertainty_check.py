@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
@@ -14,30 +15,20 @@ from survey.flight.pose import Frame
 
 FloatArray = NDArray[np.float64]
 
+BOTTOM = (PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT)
 DEPTH_BIN = 2.0
+MILLIMETRES = 20_001
 PLACES = 5
 """Places of a footprint along each side."""
 
 
-def uncertainty_metrics(
-    bottom: PointCloud, *, frames: Sequence[Frame], pixel_tangent: float, refractive_index: float
-) -> dict[str, Any]:
-    """Return how many true bottom points lie within their uncertainties; None where there are none.
+class UncertaintyTally:
+    """How many true bottom points lie within their uncertainties, part by part.
 
     Bottom points are classes 40 and 43 that are no false bottoms.
 
-    ==========================  ==================================================================
-    tvu_median_m, thu_median_m  medians of the uncertainties
-    tvu_coverage                share whose measured less true elevation at the measured place is
-                                within TVU
-    thu_coverage                share of all true places, 5 x 5 of each point's footprint as it is
-                                seen without scattering, that lie within THU of the measured place
-    uncertainty_by_depth        the same by 2 m of measured depth
-    ==========================  ==================================================================
-
     Parameters
     ----------
-    bottom : PointCloud
     frames : sequence of Frame
         That the points name.
     pixel_tangent : float
@@ -45,25 +36,59 @@ def uncertainty_metrics(
     refractive_index : float
         Of the water [1].
     """
-    error = bottom.position[:, 2] - bottom.true_elevation
-    right = np.isin(bottom.classification, (PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT))
-    right &= (np.abs(error) <= FALSE_BOTTOM_ERROR) & np.isfinite(bottom.truth).all(axis=1)
-    cloud = bottom.select(right)
-    places = footprint_places(
-        cloud, frames=frames, pixel_tangent=pixel_tangent, refractive_index=refractive_index
-    )
-    away = np.hypot(*np.moveaxis(cloud.position[:, None, :2] - places, -1, 0))
-    vertical = np.abs(error[right]) <= cloud.tvu
-    horizontal = np.mean(away <= cloud.thu[:, None], axis=1)
-    bins = np.floor(cloud.depth / DEPTH_BIN)
-    by_depth = [
-        {"from_m": float(DEPTH_BIN * one), "to_m": float(DEPTH_BIN * (one + 1.0))}
-        | {"points": int((bins == one).sum())}
-        | _held(cloud, vertical, horizontal, bins == one)
-        for one in np.unique(bins)
-    ]
-    everywhere = np.ones(len(cloud), np.bool_)
-    return _held(cloud, vertical, horizontal, everywhere) | {"uncertainty_by_depth": by_depth}
+
+    def __init__(
+        self, *, frames: Sequence[Frame], pixel_tangent: float, refractive_index: float
+    ) -> None:
+        self._frames, self._pixel_tangent = frames, pixel_tangent
+        self._refractive_index = refractive_index
+        self._bins: dict[int, _Held] = {}
+
+    def add(self, bottom: PointCloud) -> None:
+        """Take points into account."""
+        error = bottom.position[:, 2] - bottom.true_elevation
+        right = np.isin(bottom.classification, BOTTOM)
+        right &= (np.abs(error) <= FALSE_BOTTOM_ERROR) & np.isfinite(bottom.truth).all(axis=1)
+        cloud = bottom.select(right)
+        places = footprint_places(
+            cloud,
+            frames=self._frames,
+            pixel_tangent=self._pixel_tangent,
+            refractive_index=self._refractive_index,
+        )
+        away = np.hypot(*np.moveaxis(cloud.position[:, None, :2] - places, -1, 0))
+        vertical = np.abs(error[right]) <= cloud.tvu
+        horizontal = np.mean(away <= cloud.thu[:, None], axis=1)
+        bins = np.floor(cloud.depth / DEPTH_BIN).astype(np.int64)
+        for one in np.unique(bins).tolist():
+            here = bins == one
+            self._bins[one] = self._bins.get(one, _Held()) + _Held(
+                points=int(here.sum()),
+                vertical=float(vertical[here].sum()),
+                horizontal=float(horizontal[here].sum()),
+                tvu=_histogram(cloud.tvu[here]),
+                thu=_histogram(cloud.thu[here]),
+            )
+
+    def metrics(self) -> dict[str, Any]:
+        """Return plain values; None where there are no points.
+
+        ==========================  ==============================================================
+        tvu_median_m, thu_median_m  medians of the uncertainties, to a millimetre
+        tvu_coverage                share whose measured less true elevation at the measured place
+                                    is within TVU
+        thu_coverage                share of all true places, 5 x 5 of each point's footprint as it
+                                    is seen without scattering, within THU of the measured place
+        uncertainty_by_depth        the same by 2 m of measured depth
+        ==========================  ==============================================================
+        """
+        by_depth: list[dict[str, Any]] = [
+            {"from_m": DEPTH_BIN * one, "to_m": DEPTH_BIN * (one + 1), "points": held.points}
+            | held.metrics()
+            for one, held in sorted(self._bins.items())
+        ]
+        whole = sum(self._bins.values(), start=_Held())
+        return whole.metrics() | {"uncertainty_by_depth": by_depth}
 
 
 def footprint_places(
@@ -83,14 +108,36 @@ def footprint_places(
     return np.asarray(cloud.truth[:, None, :2] + (pixel_tangent * in_air)[:, None, None] * offsets)
 
 
-def _held(
-    cloud: PointCloud, vertical: NDArray[np.bool_], horizontal: FloatArray, which: NDArray[np.bool_]
-) -> dict[str, Any]:
-    if not which.any():
-        return dict.fromkeys(("tvu_median_m", "tvu_coverage", "thu_median_m", "thu_coverage"))
-    return {
-        "tvu_median_m": round(float(np.median(cloud.tvu[which])), 4),
-        "tvu_coverage": round(float(vertical[which].mean()), 4),
-        "thu_median_m": round(float(np.median(cloud.thu[which])), 4),
-        "thu_coverage": round(float(horizontal[which].mean()), 4),
-    }
+@dataclass(frozen=True, kw_only=True)
+class _Held:
+    points: int = 0
+    vertical: float = 0.0
+    horizontal: float = 0.0
+    tvu: NDArray[np.int64] = field(default_factory=lambda: np.zeros(MILLIMETRES, np.int64))
+    thu: NDArray[np.int64] = field(default_factory=lambda: np.zeros(MILLIMETRES, np.int64))
+
+    def __add__(self, other: _Held) -> _Held:
+        return _Held(
+            **{one.name: getattr(self, one.name) + getattr(other, one.name) for one in fields(self)}
+        )
+
+    def metrics(self) -> dict[str, Any]:
+        if self.points == 0:
+            return dict.fromkeys(("tvu_median_m", "tvu_coverage", "thu_median_m", "thu_coverage"))
+        return {
+            "tvu_median_m": _median(self.tvu),
+            "tvu_coverage": round(self.vertical / self.points, 4),
+            "thu_median_m": _median(self.thu),
+            "thu_coverage": round(self.horizontal / self.points, 4),
+        }
+
+
+def _histogram(metres: NDArray[np.float32]) -> NDArray[np.int64]:
+    """Return how many values fall into each millimetre; the last holds all above."""
+    at = np.clip(np.nan_to_num(metres) * 1000.0, 0, MILLIMETRES - 1).astype(np.int64)
+    return np.bincount(at, minlength=MILLIMETRES)
+
+
+def _median(histogram: NDArray[np.int64]) -> float:
+    below = np.cumsum(histogram)
+    return int(np.searchsorted(below, 0.5 * below[-1])) / 1000.0

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+PARTIAL = ".partial"
+
 
 class ProductError(ValueError):
     """A product that cannot be made from its inputs; the text says why and what to do."""
@@ -38,15 +40,26 @@ def whole_file(path: Path) -> Iterator[Path]:
     >>> [file.name for file in path.parent.iterdir()], path.read_text()
     (['note.txt'], 'whole')
     """
-    partial = path.with_name(f".{path.stem}.partial{path.suffix}")
+    partial = path.with_name(f".{path.stem}{PARTIAL}{path.suffix}")
     try:
         yield partial
-        _flush(partial)
+        flush(partial)
         partial.replace(path)
     except BaseException:
         partial.unlink(missing_ok=True)
         raise
-    _flush(path.parent)
+    flush(path.parent)
+
+
+def is_partial(path: Path) -> bool:
+    """Tell whether a name is a temporary one of `whole_file`, left by a process that was killed.
+
+    Examples
+    --------
+    >>> is_partial(Path(".bottom.partial.laz")), is_partial(Path("bottom.laz"))
+    (True, False)
+    """
+    return path.name.startswith(".") and PARTIAL in path.name
 
 
 def write_whole(path: Path, content: bytes) -> None:
@@ -70,7 +83,8 @@ def require_read_back(path: Path, what: str, is_equal: bool) -> None:
         )
 
 
-def _flush(path: Path) -> None:
+def flush(path: Path) -> None:
+    """Flush a file, or the names in a folder, to the disk."""
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)

@@ -14,7 +14,7 @@ from survey.planning.expectation import expected_light
 from survey.planning.plan import make_plan
 from survey.planning.response_table import Illumination, response_table
 from survey.preparation import prepare
-from survey.products.pixels import pixel_metrics
+from survey.products.pixels import tallied
 from survey.scenario.scenario import Scenario
 from survey.transport.response import response
 
@@ -111,7 +111,7 @@ def test_limits_agree_with_a_run(water: str, depth: float) -> None:
     flown = scenario(water, steep)
     mission = prepare(flown)
     record = fly_frame(mission, mission.frames[0]).record
-    shown = pixel_metrics([record])["detection_depth_m"]
+    shown = tallied([record]).metrics()["detection_depth_m"]
     foretold = make_plan(flown).expectation
     assert shown is not None
     assert np.nanmin(record.true_depth) + 1.0 < shown < np.nanmax(record.true_depth) - 1.0

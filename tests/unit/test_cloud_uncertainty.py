@@ -19,7 +19,7 @@ from survey.cloud.time_noise import time_noise
 from survey.cloud.wave_statistics import WaveStatistics
 from survey.flight.navigation import PoseUncertainty
 from survey.flight.pose import Pose
-from survey.products.uncertainty_check import uncertainty_metrics
+from survey.products.uncertainty_check import UncertaintyTally
 from survey.sensor.camera import Camera
 from terrain.waves import Swell, WaveField, WindSea
 
@@ -224,9 +224,13 @@ def test_coverage_is_that_of_drawn_errors(small_survey: Any) -> None:
         tvu=np.full(len(cloud), 1.96 * sigma, np.float32),
         thu=np.full(len(cloud), radius, np.float32),
     )
-    found = uncertainty_metrics(
-        drawn, frames=small_survey.frames, pixel_tangent=0.008, refractive_index=INDEX
+    tally = UncertaintyTally(
+        frames=small_survey.frames, pixel_tangent=0.008, refractive_index=INDEX
     )
+    half_way = np.arange(len(drawn)) < 1000
+    tally.add(drawn.select(half_way))
+    tally.add(drawn.select(~half_way))
+    found = tally.metrics()
     assert found["tvu_coverage"] == pytest.approx(0.95, abs=0.012)
     assert found["thu_coverage"] == pytest.approx(0.95, abs=0.015)
     assert sum(one["points"] for one in found["uncertainty_by_depth"]) == len(cloud)
@@ -234,8 +238,10 @@ def test_coverage_is_that_of_drawn_errors(small_survey: Any) -> None:
 
 def test_no_bottom_has_no_coverage(small_survey: Any) -> None:
     nothing = small_survey.bottom.select(np.zeros(0, np.intp))
-    found = uncertainty_metrics(
-        nothing, frames=small_survey.frames, pixel_tangent=0.008, refractive_index=INDEX
+    tally = UncertaintyTally(
+        frames=small_survey.frames, pixel_tangent=0.008, refractive_index=INDEX
     )
+    tally.add(nothing)
+    found = tally.metrics()
     assert found["tvu_coverage"] is None
     assert found["uncertainty_by_depth"] == []

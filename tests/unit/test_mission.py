@@ -30,9 +30,10 @@ PRODUCTS = {
     *("scenario.toml", "manifest.json", "journal.jsonl", "trajectory.csv", "bottom.laz"),
     *("water_surface.laz", "bottom.ply", "water_surface.ply", "bathymetry.tif", "bathymetry.glb"),
     *("coverage.geojson", "metrics.json", "performance.json", "report.html"),
+    *("log.txt", ".lock"),
     *(f"frames/{number:06d}.npz" for number in range(3)),
 }
-DIFFERS_BY_RUN = {"performance.json", "journal.jsonl"}
+DIFFERS_BY_RUN = {"performance.json", "journal.jsonl", "log.txt"}
 
 
 @pytest.fixture
@@ -50,12 +51,23 @@ class Log:
 
     def __init__(self) -> None:
         self.total, self.flown, self.summary = -1, set[int](), ""
+        self.notices = list[str]()
+        self.steps, self.written_steps = 0, 0
 
     def started(self, total: int) -> None:
         self.total = total
 
+    def noticed(self, text: str) -> None:
+        self.notices.append(text)
+
     def frame_done(self, index: int, seconds: float) -> None:
         self.flown.add(index)
+
+    def writing(self, total: int) -> None:
+        self.steps = total
+
+    def written(self, steps: int) -> None:
+        self.written_steps += steps
 
     def finished(self, summary: str) -> None:
         self.summary = summary
@@ -86,6 +98,7 @@ def test_a_mission_leaves_every_product_and_finds_the_seabed(
     assert found["p95_abs_error_m"] < 0.4
     assert abs(found["surface_bias_m"]) < 0.1
     assert (log.total, log.flown) == (3, {0, 1, 2})
+    assert log.written_steps == log.steps >= 6
     assert f"{found['points_bottom']} bottom points" in log.summary
 
 
@@ -108,6 +121,7 @@ def test_same_bytes_for_any_workers_any_stops_and_any_damage(
     log = Log()
     fly(small, parts, watch=log)
     assert log.flown == {2}
+    assert log.notices == ["frame 2 is flown again: its file is not what was written"]
     assert products(parts) == wanted
 
     log = Log()

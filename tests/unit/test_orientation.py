@@ -22,7 +22,7 @@ from survey.flight.pose import Frame, Pose
 from survey.flight.trajectory import fly_lines, footprint
 from survey.preparation import prepare
 from survey.products.grids import grid_elevation
-from survey.products.las_file import scan_angle_deg
+from survey.products.las_file import Views
 from survey.scenario import components
 from survey.scenario.scenario import Scenario
 from survey.sensor.camera import Camera
@@ -294,7 +294,7 @@ def test_the_scan_angle_of_las_is_positive_to_the_right(look_at: Looks) -> None:
     look = look_at(heading_deg=120.0, gradient=0.0)
     cloud = georeferenced(look, Navigation())
     frame: Frame = look.frame
-    angle = scan_angle_deg(cloud, [frame])
+    angle = Views.of([frame]).scan_angle_deg(cloud)
     assert (angle[cloud.row < 16] < 0.0).all()
     assert (angle[cloud.row >= 16] > 0.0).all()
 

@@ -11,7 +11,7 @@ import pytest
 
 from survey.cloud.points import PointClass
 from survey.paper_flights import FLIGHTS, fly_all
-from survey.products.accuracy import stitched_depths
+from survey.products.accuracy import StitchedDepths
 
 LIMITS = {"P05": {"day": 11.4, "night": 14.6}}
 SMALL = {
@@ -74,8 +74,6 @@ def test_how_deep_a_cloud_holds_the_true_bottom(small_survey: Any) -> None:
     position = cloud.position.copy()
     position[:, 2] = cloud.true_elevation + error
     found = np.where(lost, PointClass.NO_BOTTOM_FOUND, PointClass.BATHYMETRIC).astype(np.uint8)
-    judged = stitched_depths(
-        replace(cloud, position=position, classification=found),
-        water_level=small_survey.water_level,
-    )
-    assert judged == {"stitched_depth_m": 6.0, "half_stitched_depth_m": 8.0}
+    judged = StitchedDepths(water_level=small_survey.water_level)
+    judged.add(replace(cloud, position=position, classification=found))
+    assert judged.metrics() == {"stitched_depth_m": 6.0, "half_stitched_depth_m": 8.0}

@@ -12,9 +12,9 @@ import pytest
 from survey.cloud.points import Outcome, PointClass
 from survey.optics.water import WaterColumn, petzold_water
 from survey.optics.water.apparent import diffuse_attenuation
-from survey.products.accuracy import metrics
-from survey.products.coverage import surveyed_hull
-from survey.products.pixels import explain_empty, pixel_metrics
+from survey.products.accuracy import Accuracy
+from survey.products.coverage import hull_of
+from survey.products.pixels import tallied
 from survey.products.reach import reach_sentence
 
 CLEAR, HARBOR = (
@@ -25,15 +25,14 @@ WATER = WaterColumn.uniform(CLEAR).with_layer(HARBOR, top=7.0, bottom=7.5)
 
 def judged(survey: Any, *, cell_size: float = 8.0) -> dict[str, Any]:
     """Return the metrics of a survey over its hull."""
-    return metrics(
-        bottom=survey.bottom,
-        surface=survey.surface,
-        records=survey.records,
-        elevation_at=survey.elevation_at,
-        water_level=survey.water_level,
-        survey_area=surveyed_hull(survey.records),
-        cell_size=cell_size,
-        water=WATER,
+    accuracy = Accuracy(
+        water_level=survey.water_level, survey_area=hull_of(survey.records), cell_size=cell_size
+    )
+    odd = survey.bottom.frame % 2 == 1
+    accuracy.add(survey.bottom.select(odd), survey.surface)
+    accuracy.add(survey.bottom.select(~odd), survey.surface.select(slice(0, 0)))
+    return accuracy.metrics(
+        pixels=tallied(survey.records), elevation_at=survey.elevation_at, water=WATER
     )
 
 
@@ -120,7 +119,7 @@ def test_density_of_one_line(survey_of: Any) -> None:
 
 
 def test_pixels_by_outcome(small_survey: Any) -> None:
-    values = pixel_metrics(small_survey.records)
+    values = tallied(small_survey.records).metrics()
     outcome = np.array([record.outcome for record in small_survey.records])
     weak = int((outcome == Outcome.TOO_WEAK).sum())
     assert values["missed"]["too_weak"] == weak > 0
@@ -133,7 +132,7 @@ def test_pixels_by_outcome(small_survey: Any) -> None:
 
 def test_detection_depth(small_survey: Any) -> None:
     """The made survey detects with 0.99 down to 7 m and with 0.85 below."""
-    values = pixel_metrics(small_survey.records)
+    values = tallied(small_survey.records).metrics()
     assert values["detection_depth_m"] == 7.0
     assert values["found_fraction_where_detectable"] == 1.0
     assert values["found_fraction_above_detection_depth"] == 1.0
@@ -174,7 +173,7 @@ def test_a_miss_in_shallow_water_is_counted(small_survey: Any) -> None:
     shallow = records[2].outcome.copy()
     shallow[:] = Outcome.MERGED_WITH_SURFACE
     records[2] = replace(records[2], outcome=shallow)
-    values = pixel_metrics(records)
+    values = tallied(records).metrics()
     assert values["missed"]["merged_with_surface"] == 128
     assert values["found_fraction_above_detection_depth"] < 1.0
 
@@ -196,11 +195,11 @@ def test_nothing_found_is_null_not_nan(small_survey: Any) -> None:
 def test_an_empty_cloud_is_explained(small_survey: Any, outcome: Outcome, words: str) -> None:
     record = small_survey.records[5]
     missed = replace(record, outcome=np.full_like(record.outcome, outcome))
-    assert words in explain_empty([missed])
-    assert "100 % of 128 wet pixels" in explain_empty([missed])
+    assert words in tallied([missed]).explain_empty()
+    assert "100 % of 128 wet pixels" in tallied([missed]).explain_empty()
 
 
 def test_land_alone_is_explained(small_survey: Any) -> None:
     record = small_survey.records[0]
     dry = replace(record, true_depth=np.full_like(record.true_depth, -1.0))
-    assert "no pixel looks at water" in explain_empty([dry])
+    assert "no pixel looks at water" in tallied([dry]).explain_empty()

@@ -15,8 +15,10 @@ from survey.cloud.points import Outcome
 from survey.products.coverage import (
     GAP,
     OUTSIDE_AREA,
-    coverage_map,
-    surveyed_hull,
+    CoverageMap,
+    CoverageTally,
+    hull_of,
+    looked_at,
     write_coverage_geojson,
 )
 from survey.products.writing import ProductError
@@ -25,12 +27,16 @@ REACH = 4.6
 """Half the diagonal of the 6.4 m pixels of these surveys [m]."""
 
 
-def map_of(survey: Any, *, cell_size: float = 2.0) -> Any:
-    """Return the coverage over the hull of a survey."""
-    hull = surveyed_hull(survey.records)
-    return coverage_map(
-        survey.records, survey.map_frame, survey_area=hull, cell_size=cell_size, reach=REACH
+def map_of(survey: Any, *, records: list[Any] | None = None, cell_size: float = 2.0) -> CoverageMap:
+    """Return the coverage over the hull of a survey, or what some records make of it."""
+    origin = survey.map_frame.origin[:2]
+    coverage = CoverageTally(
+        survey_area=hull_of(survey.records) + origin, cell_size=cell_size, reach=REACH
     )
+    seen = [looked_at(record) for record in records or survey.records]
+    places = np.concatenate([places for places, _ in seen]) + origin
+    coverage.add(places, np.concatenate([outcomes for _, outcomes in seen]))
+    return coverage.map()
 
 
 def spoil(survey: Any) -> Any:
@@ -127,18 +133,12 @@ def test_a_flight_that_sees_nothing_is_an_error(small_survey: Any) -> None:
     record = small_survey.records[0]
     blind = replace(record, true_position=np.full_like(record.true_position, np.nan))
     with pytest.raises(ProductError, match="fewer than three pixels"):
-        surveyed_hull([blind])
+        hull_of([blind])
 
 
 def test_one_pixel_that_saw_the_bottom_covers_its_cell(small_survey: Any) -> None:
     """Ten failures and one success look at the same place."""
     record = small_survey.records[20]
     failed = replace(record, outcome=np.full_like(record.outcome, Outcome.TOO_WEAK))
-    covered = coverage_map(
-        [failed] * 10 + [record],
-        small_survey.map_frame,
-        survey_area=surveyed_hull([record]),
-        cell_size=2.0,
-        reach=REACH,
-    )
+    covered = map_of(replace(small_survey, records=[record]), records=[failed] * 10 + [record])
     assert np.all(np.isin(covered.state, [Outcome.FOUND, OUTSIDE_AREA]))

@@ -13,11 +13,12 @@ import pytest
 
 from survey.flight.pose import Pose
 from survey.optics.water import WaterColumn, petzold_water
-from survey.products.accuracy import elevation_errors, metrics
-from survey.products.coverage import coverage_map, surveyed_hull
+from survey.products.accuracy import Accuracy
+from survey.products.coverage import CoverageTally, hull_of, looked_at
 from survey.products.gps_time import adjusted_gps_time
 from survey.products.grids import grid_elevation
 from survey.products.json_file import write_json
+from survey.products.pixels import tallied
 from survey.products.report import write_report
 from survey.products.trajectory_file import read_trajectory_csv, write_trajectory_csv
 from survey.products.writing import ProductError, whole_file
@@ -122,28 +123,26 @@ class Links(HTMLParser):
 
 def write_report_of(survey: Any, path: Path) -> str:
     """Write the report of a survey and return the page."""
-    hull = surveyed_hull(survey.records)
+    hull, origin = hull_of(survey.records), survey.map_frame.origin[:2]
+    accuracy = Accuracy(water_level=survey.water_level, survey_area=hull, cell_size=8.0)
+    accuracy.add(survey.bottom, survey.surface)
+    coverage = CoverageTally(survey_area=hull + origin, cell_size=4.0, reach=4.6)
+    looked = [looked_at(record) for record in survey.records]
+    places, outcomes = (np.concatenate(columns) for columns in zip(*looked, strict=True))
+    coverage.add(places + origin, outcomes)
+    water = petzold_water("coastal", refractive_index=1.34, group_index=1.36)
     write_report(
         path,
         title="Bar <b>",
         description="Flown & stitched.",
-        metrics=metrics(
-            bottom=survey.bottom,
-            surface=survey.surface,
-            records=survey.records,
+        metrics=accuracy.metrics(
+            pixels=tallied(survey.records),
             elevation_at=survey.elevation_at,
-            water_level=survey.water_level,
-            survey_area=hull,
-            cell_size=8.0,
-            water=WaterColumn.uniform(
-                petzold_water("coastal", refractive_index=1.34, group_index=1.36)
-            ),
+            water=WaterColumn.uniform(water),
         ),
         grid=grid_elevation(survey.bottom, survey.map_frame, cell_size=8.0),
-        coverage=coverage_map(
-            survey.records, survey.map_frame, survey_area=hull, cell_size=4.0, reach=4.6
-        ),
-        errors=elevation_errors(survey.bottom),
+        coverage=coverage.map(),
+        errors=accuracy.bottom.errors,
         water_level=survey.water_level,
     )
     return path.read_text(encoding="utf-8")

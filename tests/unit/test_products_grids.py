@@ -13,8 +13,9 @@ import trimesh
 
 from survey.cloud.points import PointClass
 from survey.products.cells import CellGrid
-from survey.products.grids import grid_elevation, write_bathymetry_tif
+from survey.products.grids import grid_elevation
 from survey.products.mesh_files import grid_surface, write_bathymetry_glb
+from survey.products.tif_file import write_bathymetry_tif
 from survey.products.writing import ProductError
 
 

@@ -11,7 +11,7 @@ import pytest
 from survey.cloud.points import Outcome
 from survey.products.accuracy import BOTTOM_CLASSES
 from survey.products.frame_file import FrameResult
-from survey.products.substrates import substrate_metrics
+from survey.products.substrates import SubstrateTally
 
 
 def results_of(survey: Any) -> list[FrameResult]:
@@ -26,9 +26,18 @@ def results_of(survey: Any) -> list[FrameResult]:
     ]
 
 
+def judged(bottom: Any, results: list[FrameResult], names: dict[int, str]) -> dict[str, Any]:
+    tally = SubstrateTally()
+    for result in results:
+        tally.add_frame(result)
+    for frame in range(2):
+        tally.add_points(bottom.select(bottom.frame % 2 == frame))
+    return tally.metrics(names)
+
+
 def test_every_substrate_has_its_pixels_its_points_and_its_errors(small_survey: Any) -> None:
     bottom = small_survey.bottom
-    found = substrate_metrics(bottom, results_of(small_survey), {1: "sand", 2: "rock"})
+    found = judged(bottom, results_of(small_survey), {1: "sand", 2: "rock"})
     assert list(found) == ["unlabelled", "sand", "rock"]
     depth = np.concatenate([record.true_depth.ravel() for record in small_survey.records])
     outcome = np.concatenate([record.outcome.ravel() for record in small_survey.records])
@@ -51,7 +60,7 @@ def test_a_substrate_that_nothing_looks_at_is_left_out(small_survey: Any) -> Non
         for r in results
     ]
     nothing = small_survey.bottom.select(np.zeros(len(small_survey.bottom), dtype=bool))
-    found = substrate_metrics(nothing, results, {7: "steel", 8: "concrete"})
+    found = judged(nothing, results, {7: "steel", 8: "concrete"})
     assert list(found) == ["steel"]
     assert found["steel"]["points_bottom"] == 0
     assert found["steel"]["bias_m"] is None

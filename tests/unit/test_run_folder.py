@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from survey import run_folder
+from survey import run_identity
 from survey.errors import OtherRunError
 from survey.exit_status import OTHER_RUN, explain
 from survey.products.frame_file import FrameResult, frame_bytes, read_frame, write_frame
@@ -83,7 +83,7 @@ def test_a_run_is_taken_up_where_it_stopped(
     again = RunFolder.open(tmp_path / "run", scenario)
     assert again.whole == run.whole
     assert set(again.whole) == {0, 3}
-    assert frame_bytes(again.read([3])[0]) == frame_bytes(result)
+    assert frame_bytes(again.frame(3)) == frame_bytes(result)
 
 
 @pytest.mark.parametrize("damage", ["gone", "changed"])
@@ -157,9 +157,59 @@ def test_other_code_and_versions_are_refused(
     scenario: Scenario, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     RunFolder.open(tmp_path / "run", scenario)
-    monkeypatch.setattr(run_folder, "_code_digest", lambda: "other")
-    monkeypatch.setattr(run_folder.metadata, "version", lambda name: "0")
+    monkeypatch.setattr(run_identity, "_code_digest", lambda: "other")
+    monkeypatch.setattr(run_identity.metadata, "version", lambda name: "0")
     assert "other library versions, other code" in refused(scenario, tmp_path / "run")
+
+
+def test_the_keys_that_differ_are_named(scenario: Scenario, tmp_path: Path) -> None:
+    RunFolder.open(tmp_path / "run", scenario)
+    other = scenario.replace(**{"mission.seed": 2, "flight.lines": 3})
+    lines = refused(other, tmp_path / "run")
+    assert "mission.seed was 1, now 2" in lines
+    assert "flight.lines was 1, now 3" in lines
+
+
+def test_a_run_flown_anew_leaves_nothing_of_the_old_and_all_of_the_user_s(
+    scenario: Scenario, tmp_path: Path, result: FrameResult
+) -> None:
+    run = RunFolder.open(tmp_path / "run", scenario)
+    run.keep(3, result)
+    for name in ("bottom.laz", "metrics.json", "trajectory_cblue.txt", "notes.md"):
+        (run.path / name).write_text("old")
+    other = RunFolder.open(tmp_path / "run", scenario.replace(**{"mission.seed": 2}), refly=True)
+    assert other.whole == {}
+    assert sorted(contents(run.path)) == [".lock", "manifest.json", "notes.md", "scenario.toml"]
+    assert other.path.joinpath("scenario.toml").read_text() != scenario.to_toml(beside=run.path)
+
+
+def test_a_note_after_a_torn_one_counts(
+    scenario: Scenario, tmp_path: Path, result: FrameResult
+) -> None:
+    run = RunFolder.open(tmp_path / "run", scenario)
+    (run.path / "journal.jsonl").write_text('{"frame": 0, "sha')
+    run.keep(3, result)
+    assert set(RunFolder.open(tmp_path / "run", scenario).whole) == {3}
+
+
+def test_a_run_killed_at_its_first_file_is_taken_up(scenario: Scenario, tmp_path: Path) -> None:
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / ".manifest.partial.json").write_text("{")
+    (tmp_path / "run" / ".lock").touch()
+    assert RunFolder.open(tmp_path / "run", scenario).whole == {}
+
+
+def test_why_a_frame_is_no_longer_whole_is_known(
+    scenario: Scenario, tmp_path: Path, result: FrameResult
+) -> None:
+    run = RunFolder.open(tmp_path / "run", scenario)
+    for index in (0, 1, 2):
+        run.keep(index, result)
+    run.frame_path(0).unlink()
+    run.frame_path(2).write_bytes(b"ruined")
+    again = RunFolder.open(tmp_path / "run", scenario)
+    assert set(again.whole) == {1}
+    assert again.spoilt == {0: "its file is gone", 2: "its file is not what was written"}
 
 
 @pytest.mark.parametrize(
