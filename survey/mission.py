@@ -9,11 +9,13 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 from typing import Any
 
+from survey.cloud.error_causes import with_causes
 from survey.cloud.frame_points import bottom_points, find_water, surface_points
 from survey.cloud.georeference import pixel_rays
 from survey.cloud.ranging import blind_at, first_echo
 from survey.cloud.record import pixel_record
 from survey.cloud.truth import true_targets
+from survey.cloud.uncertainty import Surroundings
 from survey.errors import UserError
 from survey.flight.pose import Frame
 from survey.preparation import Mission, prepare
@@ -45,6 +47,7 @@ def observe(mission: Mission, frame: Frame) -> Observation:
 
     rays = pixel_rays(camera=mission.camera, pose=frame.measured)
     first = first_echo(counts=readings.counts, noise=noise)
+    first = mission.scattering().on_time(first, rays)
     line = find_water(
         first=first,
         frame=frame,
@@ -52,6 +55,9 @@ def observe(mission: Mission, frame: Frame) -> Observation:
         expected_level=mission.expected_level(frame.time),
         refractive_index=engine.water.refractive_index,
         wave_height=surface.wave_height,
+    )
+    line, unknown = mission.refraction.applied(
+        line, first=first, frame=frame, rays=rays, pulse_sigma=mission.budget.pulse_sigma
     )
     search = mission.search.over(
         noise=noise,
@@ -78,9 +84,20 @@ def observe(mission: Mission, frame: Frame) -> Observation:
         targets=targets,
         seabed=mission.seabed,
         group_index=engine.water.group_index,
+        scattering=mission.scattering(),
+    )
+    around = Surroundings(
+        frame=frame, rays=rays, line=line, unknown=unknown, scattering=mission.scattering()
     )
     on_surface, on_bottom = (
-        mission.calibration.applied(mission.budget.applied(cloud, frame=frame), frame=frame)
+        with_causes(
+            mission.calibration.applied(mission.budget.applied(cloud, around), frame=frame),
+            budget=mission.budget,
+            around=around,
+            true_pose=frame.pose,
+            true_level=surface.level,
+            targets=targets,
+        )
         for cloud in (on_surface, on_bottom)
     )
     record = pixel_record(
@@ -195,6 +212,9 @@ def summary(folder: Path, metrics: dict[str, object]) -> str:
             f"bottom against the true seabed: bias {_metres(metrics['bias_m'])}, "
             f"95 % within {_metres(metrics['p95_abs_error_m'])}, "
             f"false bottoms {metrics['false_bottoms']}",
+            f"uncertainty, 95 %: vertical {_metres(metrics['tvu_median_m'])} holds for "
+            f"{_share(metrics['tvu_coverage'])}, horizontal {_metres(metrics['thu_median_m'])} for "
+            f"{_share(metrics['thu_coverage'])} of the points",
             *verdict_lines(metrics),
             f"written to {folder}: report.html, bottom.laz, bathymetry.tif and others",
         )
@@ -203,6 +223,10 @@ def summary(folder: Path, metrics: dict[str, object]) -> str:
 
 def _metres(value: object) -> str:
     return f"{value:.3f} m" if isinstance(value, float) else "not measured"
+
+
+def _share(value: object) -> str:
+    return f"{100.0 * value:.1f} %" if isinstance(value, float) else "none"
 
 
 def fly_frames(

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cache, partial
 from math import hypot
 
 import numpy as np
@@ -16,8 +16,13 @@ from survey.cloud.posed_noise import PosedNoise
 from survey.cloud.ranging import surface_walk
 from survey.cloud.raw import RawReadings, raw_readings
 from survey.cloud.reflectance import Calibration
+from survey.cloud.refraction import Refraction
+from survey.cloud.scattering import Scattering
 from survey.cloud.uncertainty import Budget
+from survey.cloud.wave_statistics import WaveStatistics
+from survey.expected_errors import LevelBottoms
 from survey.expected_light import coarse, expected_light
+from survey.flight.navigation import PoseUncertainty
 from survey.flight.pose import Frame, Pose
 from survey.flight.trajectory import footprints, require_air
 from survey.optics.background import background_power
@@ -40,6 +45,7 @@ MODEL_FLASHES = 4
 FIRST_MODEL_FRAME = 1 << 31
 SHALLOWEST_CALIBRATED = 0.1  # [m]
 CALIBRATED_DEPTHS = 40
+WAVE_PATCH = 512.0
 RAW_STEPS = {"none": None, "sampled": 8, "all": 1}
 
 
@@ -48,7 +54,8 @@ class Mission:
     """The parts of a mission in SI units; `prepare` builds them.
 
     `engine` and `posed_noise` are those of mean level; `level_error` is how far the expected water
-    level lies above the true one [m].
+    level lies above the true one [m]; `scattering` returns the errors that scattered light is
+    expected to make, worked out when first asked for.
     """
 
     frames: Sequence[Frame]
@@ -62,6 +69,8 @@ class Mission:
     posed_noise: PosedNoise
     budget: Budget
     calibration: Calibration
+    refraction: Refraction
+    scattering: Callable[[], Scattering]
     products: ProductSettings
     raw_step: int | None
 
@@ -104,6 +113,7 @@ def prepare(scenario: Scenario) -> Mission:
     seabed = components.seabed(scenario)
     seabed.require_coverage(footprints(camera, frames, surface.lowest_level))
     require_air(frames, highest=seabed.grid.z_high)
+    noise = posed_noise(scenario, frames[0], surface)
     return Mission(
         frames=frames,
         camera=camera,
@@ -113,12 +123,21 @@ def prepare(scenario: Scenario) -> Mission:
         engine=_engine(scenario, seabed, water, surface),
         level_error=scenario.processing.water_level_error_m,
         search=SEARCHES[scenario.processing.ranging],
-        posed_noise=posed_noise(scenario, frames[0], surface),
+        posed_noise=noise,
         budget=Budget(
+            camera=camera,
             pulse_sigma=_seen_pulse(scenario),
+            refractive_index=water.refractive_index,
             group_index=water.group_index,
-            pixel_tangent=camera.pixel_tangent,
+            pose=PoseUncertainty.of(components.navigation(scenario)),
+            level_error=abs(scenario.processing.water_level_error_m),
         ),
+        refraction=Refraction(
+            local=scenario.processing.refraction == "local_waves",
+            waves=_wave_statistics(surface, pixel=camera.pixel_tangent * scenario.flight.height_m),
+            refractive_index=water.refractive_index,
+        ),
+        scattering=cache(partial(_scattering, scenario, noise, surface)),
         calibration=_calibration(scenario, frames[0], surface),
         products=product_settings(scenario),
         raw_step=RAW_STEPS[scenario.processing.keep_waveforms],
@@ -152,7 +171,7 @@ def posed_noise(scenario: Scenario, frame: Frame, sea: SeaSurface) -> PosedNoise
     nothing can reach; a survey would know it from its deep water. Of resolved waves it knows the
     slopes' statistics alone: all of them stand on the mean level.
     """
-    level_sea = replace(sea, waves=None)
+    level_sea = replace(sea, waves=None, tide=None)
     water = components.expected_water(scenario)
     engine = _engine(scenario, _unreachable_bottom(scenario), water, level_sea)
     pose = Pose(
@@ -174,6 +193,34 @@ def posed_noise(scenario: Scenario, frame: Frame, sea: SeaSurface) -> PosedNoise
         column=light - surface,
         variance=variance,
         build=build,
+    )
+
+
+def _scattering(scenario: Scenario, noise: PosedNoise, sea: SeaSurface) -> Scattering:
+    """Return what scattered light is expected to do to the bottom; nothing if it may stay."""
+    if not scenario.processing.correct_scattering:
+        return Scattering.none()
+    water, level_sea = components.expected_water(scenario), replace(sea, waves=None, tide=None)
+    return LevelBottoms(
+        engine=lambda bed: _engine(scenario, bed, water, level_sea),
+        search=SEARCHES[scenario.processing.ranging],
+        noise=noise.level,
+        frame=Frame(index=0, line=0, time=0.0, pose=noise.pose),
+        camera=noise.camera,
+        level=sea.level,
+        map_frame=components.map_frame(scenario),
+    ).expected_errors()
+
+
+def _wave_statistics(sea: SeaSurface, *, pixel: float) -> WaveStatistics:
+    """Return the waves' spectrum; one patch stands for what a log or a forecast would tell."""
+    if sea.waves is None:
+        return WaveStatistics.still(pixel)
+    half = 0.5 * WAVE_PATCH
+    patch = sea.waves.lattice(time=0.0, level=0.0, west=-half, east=half, south=-half, north=half)
+    side = min(patch.coefficients.shape)
+    return WaveStatistics.of_elevations(
+        patch.coefficients[:side, :side], spacing=1.0 / patch.per_cell, pixel=pixel
     )
 
 

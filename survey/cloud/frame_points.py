@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.echo import Echo
-from survey.cloud.georeference import WaterPath, bend_at_surface, place_in_air, place_in_water
+from survey.cloud.georeference import (
+    WaterPath,
+    bend_at_slopes,
+    bend_at_surface,
+    place_in_air,
+    place_in_water,
+)
+from survey.cloud.local_surface import fitted_planes
 from survey.cloud.lone_echoes import stands_alone, stands_high
-from survey.cloud.points import PointClass, PointCloud
+from survey.cloud.points import Cause, PointClass, PointCloud
+from survey.cloud.scattering import Scattering
 from survey.cloud.truth import TrueTargets
 from survey.flight.pose import Frame
 from terrain.substrate import UNLABELLED
@@ -39,6 +47,8 @@ class WaterLine:
     ----------
     level : float
         Estimated elevation of the water [m].
+    measured : bool
+        Whether first echoes told it, or it is the expected one.
     reach : float
         How far above and below it there may be water [m].
     land, water : array (rows, columns)
@@ -50,11 +60,47 @@ class WaterLine:
     """
 
     level: float
+    measured: bool
     reach: float
     land: BoolArray
     water: BoolArray
     first: FloatArray
     path: WaterPath
+
+    @property
+    def on_water(self) -> BoolArray:
+        """Tell which first echoes lie on the water (rows, columns)."""
+        return self.water & (np.abs(self.first[..., 2] - self.level) <= self.reach)
+
+    def on_local_waves(
+        self, *, frame: Frame, rays: FloatArray, refractive_index: float, width: float
+    ) -> WaterLine:
+        """Return the line with paths bent at planes through the neighbourhoods' first echoes.
+
+        Where too few echoes lie near, the level stays the mean one.
+
+        Parameters
+        ----------
+        frame : Frame
+        rays : array (rows, columns, 3)
+            Unit directions by the measured pose.
+        refractive_index : float
+            Of the water [1].
+        width : float
+            Standard deviation of the neighbourhoods' weights [pixels].
+        """
+        planes = fitted_planes(places=self.first, used=self.on_water, width=width)
+        known = np.isfinite(planes.elevation)
+        position = frame.measured.position
+        elevation = np.where(known, planes.elevation, self.level)
+        path = bend_at_slopes(
+            position=position,
+            rays=rays,
+            length=(elevation - position[2]) / rays[..., 2],
+            slopes=np.where(known[..., None], planes.slope, 0.0),
+            refractive_index=refractive_index,
+        )
+        return replace(self, path=path)
 
     @property
     def surface_time(self) -> FloatArray:
@@ -96,12 +142,13 @@ def find_water(
     elevation = places[..., 2]
     reach = max(LAND_ABOVE_WATER, CREST_PER_WAVE_HEIGHT * wave_height)
     near = np.abs(elevation - expected_level) <= reach
-    enough = near.sum() >= ENOUGH_SURFACE_ECHOES
+    enough = bool(near.sum() >= ENOUGH_SURFACE_ECHOES)
     level = float(np.median(elevation[near])) if enough else expected_level
     land = elevation > level + reach
     land &= ~stands_alone(elevation, land)
     return WaterLine(
         level=level,
+        measured=enough,
         reach=reach,
         land=land,
         water=~land,
@@ -116,9 +163,8 @@ def surface_points(
     *, line: WaterLine, first: Echo, frame: Frame, targets: TrueTargets
 ) -> PointCloud:
     """Return the first echoes on the water, class 41, and those alone in the air, class 18."""
-    above_land = first.found & ~line.land
-    on_water = above_land & (np.abs(line.first[..., 2] - line.level) <= line.reach)
-    in_air = above_land & (line.first[..., 2] > line.level + line.reach)
+    on_water = line.on_water
+    in_air = first.found & line.water & (line.first[..., 2] > line.level + line.reach)
     wet = targets.classification != PointClass.GROUND
     return _cloud(
         which=on_water | in_air,
@@ -149,13 +195,16 @@ def bottom_points(
     targets: TrueTargets,
     seabed: Seabed,
     group_index: float,
+    scattering: Scattering,
 ) -> PointCloud:
     """Return one point a pixel: bottom (40), object (43), land (2), or none found (45).
 
-    A bottom that stands alone is noise, high (18) or low (7), and keeps its place.
+    Bottom points are freed of what scattering is expected to do to them. One that stands alone is
+    noise, high (18) or low (7), and keeps its place.
     """
     found = bottom.found
-    corrected = place_in_water(path=line.path, time=bottom.time, group_index=group_index)
+    refracted = place_in_water(path=line.path, time=bottom.time, group_index=group_index)
+    corrected = scattering.corrected(refracted, rays=rays, level=line.level)
     straight = place_in_air(position=frame.measured.position, rays=rays, time=bottom.time)
     on_land, in_water = line.land[..., None], found[..., None]
     position = np.where(on_land, line.first, np.where(in_water, corrected, line.path.entry))
@@ -230,8 +279,8 @@ def _cloud(
 ) -> PointCloud:
     """Return the chosen pixels of one frame as points, in the order of rows and columns.
 
-    Without uncertainties and measured reflectance: those come from `survey.cloud.uncertainty` and
-    `survey.cloud.reflectance`.
+    Without uncertainties, causes and measured reflectance: see `survey.cloud.uncertainty`,
+    `survey.cloud.error_causes` and `survey.cloud.reflectance`.
     """
     row, column = np.nonzero(which)
     count = len(row)
@@ -248,6 +297,7 @@ def _cloud(
         water_path=water_path[which].astype(np.float32),
         tvu=np.full(count, np.nan, np.float32),
         thu=np.full(count, np.nan, np.float32),
+        cause=np.full(count, Cause.NONE, np.uint8),
         surface_elevation=np.where(line.land, np.nan, line.path.entry[..., 2])[which],
         reflectance=np.full(count, np.nan, np.float32),
         true_reflectance=reflectance[which].astype(np.float32),

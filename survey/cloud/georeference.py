@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +46,10 @@ class WaterPath:
     normal: FloatArray
     air_time: FloatArray
     direction: FloatArray
+
+    def at(self, which: Any) -> WaterPath:
+        """Return the paths of some rays, by any index of arrays."""
+        return WaterPath(**{one.name: getattr(self, one.name)[which] for one in fields(self)})
 
 
 def bend_at_surface(
@@ -93,9 +97,39 @@ def bend_at_waves(
     from terrain.waves.lattice import meetings
 
     length, slopes = meetings(waves, position, rays.reshape(-1, 3))
-    normal = np.column_stack([-slopes, np.ones(len(slopes))]).reshape(rays.shape)
+    return bend_at_slopes(
+        position=position,
+        rays=rays,
+        length=length.reshape(rays.shape[:-1]),
+        slopes=slopes.reshape(*rays.shape[:-1], 2),
+        refractive_index=refractive_index,
+    )
+
+
+def bend_at_slopes(
+    *,
+    position: FloatArray,
+    rays: FloatArray,
+    length: FloatArray,
+    slopes: FloatArray,
+    refractive_index: float,
+) -> WaterPath:
+    """Refract rays (..., 3) from a position [m] by Snell's law at a known length and slope.
+
+    Parameters
+    ----------
+    position : array (3,) or (..., 3)
+    rays : array (..., 3)
+        Unit directions.
+    length : array (...)
+        From the position to the water [m].
+    slopes : array (..., 2)
+        Of the water there towards east and north [1].
+    refractive_index : float
+        Phase index of the water [1].
+    """
+    normal = np.concatenate([-slopes, np.ones_like(slopes[..., :1])], axis=-1)
     normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
-    length = length.reshape(rays.shape[:-1])
     cosine = -np.sum(rays * normal, axis=-1)
     below = np.sqrt(1.0 - (1.0 - cosine**2) / refractive_index**2)
     return WaterPath(

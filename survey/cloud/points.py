@@ -30,7 +30,7 @@ NOISE_CLASSES = (PointClass.LOW_NOISE, PointClass.HIGH_NOISE)
 class Outcome(IntEnum):
     """What became of the bottom in one pixel of one frame, see `survey.cloud.truth.outcomes`.
 
-    The causes of weak echoes are those of `survey.cloud.causes`. NOISE is a bottom that was
+    The causes of weak echoes are those of `survey.cloud.error_causes`. NOISE is a bottom that was
     found, true or false, and sorted out because it stood alone.
     """
 
@@ -46,6 +46,20 @@ class Outcome(IntEnum):
     TOO_TURBID = 9
     GLINT = 10
     NOISE = 11
+
+
+class Cause(IntEnum):
+    """Which effect truly moved a point most; NONE where no echo was placed."""
+
+    NONE = 0
+    FALSE_ECHO = 1
+    RANGE_NOISE = 2
+    SCATTERING = 3
+    WAVES = 4
+    NAVIGATION = 5
+    WATER_LEVEL = 6
+    RELIEF = 7
+    """In budgets alone: the truth does not tell relief from light that came from elsewhere."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,6 +90,8 @@ class PointCloud:
     tvu, thu : array (n,)
         Total vertical and horizontal uncertainty, 95 % [m], see `survey.cloud.uncertainty`; nan
         where no echo was placed.
+    cause : array (n,)
+        `Cause` of its error, see `survey.cloud.error_causes`.
     surface_elevation : array (n,)
         Of the water where the point's ray was taken to enter it [m, local]; nan on land.
     reflectance : array (n,)
@@ -107,6 +123,7 @@ class PointCloud:
     water_path: NDArray[np.float32]
     tvu: NDArray[np.float32]
     thu: NDArray[np.float32]
+    cause: NDArray[np.uint8]
     surface_elevation: NDArray[np.float64]
     reflectance: NDArray[np.float32]
     true_reflectance: NDArray[np.float32]

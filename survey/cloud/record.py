@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.bottom_search import BottomSearch
-from survey.cloud.causes import weak_causes
 from survey.cloud.georeference import depth_of
 from survey.cloud.noise import NoiseModel, gate_sums
 from survey.cloud.points import NOISE_CLASSES, PixelRecord, PointClass, PointCloud
 from survey.cloud.ranging import GUARD_GATES
 from survey.cloud.truth import TrueTargets, outcomes
+from survey.cloud.weak_echoes import weak_causes
 from survey.optics.water import WaterColumn
 from survey.transport.waveforms import Waveforms
 

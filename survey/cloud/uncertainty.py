@@ -1,54 +1,67 @@
 """How far a point may be off: total vertical and horizontal uncertainty, 95 %.
 
-TVU bounds the measured less the true elevation at the measured place, THU the horizontal distance
-of that place from where the light of its echo truly was reflected: somewhere in the pixel's
-footprint.
+Each effect is one or more vectors (n, 3): where its error of one standard deviation moves the
+points [m]. Effects are independent, so their covariances, products of these vectors, add up. TVU
+bounds the measured less the true elevation at the measured place: what moves a point sideways by h
+over a bed of slope g counts there with -g h. THU bounds the horizontal distance from the measured
+place to any place of the pixel's footprint as it is seen without scattering.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.constants import speed_of_light
 
-from survey.cloud.points import PointClass, PointCloud
+from survey.cloud.displacements import Displacements
+from survey.cloud.frame_points import WaterLine
+from survey.cloud.local_surface import fitted_planes
+from survey.cloud.points import Cause, PointClass, PointCloud
+from survey.cloud.radius import radius_95
+from survey.cloud.scattering import Scattering, off_nadir
+from survey.cloud.time_noise import time_noise
+from survey.cloud.wave_statistics import Unknown
+from survey.flight.navigation import PoseUncertainty
 from survey.flight.pose import Frame
+from survey.sensor.camera import Camera
 
 FloatArray = NDArray[np.float64]
+Effects = Mapping[Cause, FloatArray]
 
-WITHIN_95 = 1.96
-MATCHED_ALONE = 8.0 / (3.0 * np.sqrt(3.0))
-MATCHED_OVER_NOISE = 3.01
-SQUARE_WITHIN_95 = 1.198
-"""Radius that holds 95 % of a square of half side 1: area of the circle in it, by quadrature."""
+WITHIN_95 = 1.95996
+MEDIAN_OVER_MEAN = 1.2533
+"""Standard error of a median over that of a mean, Gaussian errors: sqrt(pi / 2)."""
+WATER_KNOWN = 0.1
+"""Assumed: a survey knows its water's scattering to 10 %, and so what it corrects by it."""
+OF_A_PIXEL = (Cause.RANGE_NOISE, Cause.SCATTERING, Cause.WAVES)
+NEIGHBOURHOOD = 1.5
+"""Width of the planes that tell slope and relief of the bed, as in `fitted_planes` [pixels]."""
 
 
-def time_noise(*, counts: FloatArray, snr: FloatArray, pulse_sigma: float) -> FloatArray:
-    """Return the standard error of an echo's time by its counting noise [s].
-
-    The crest of counts that are convolved with the pulse, Gaussian of deviation s, errs with
-    s^2 8 / (3 sqrt 3) / N for N counts alone, and with 4 sqrt(pi) s^3 b / N^2 over a noise of
-    variance b in a unit of time: quotients of the variance of the slope and the squared curvature
-    at the crest. In a gate of one full width at half maximum B = b 2.355 s, hence 3.01 s^2 B / N^2.
+@dataclass(frozen=True, kw_only=True)
+class Surroundings:
+    """What a frame says beside its points.
 
     Parameters
     ----------
-    counts, snr : array
-        Of the echo: N, and N over the standard deviation of all counts in the gate [1].
-    pulse_sigma : float
-        Standard deviation of the pulse as the detector sees it [s].
-
-    Examples
-    --------
-    >>> float(time_noise(counts=np.array(400.0), snr=np.array(20.0), pulse_sigma=4e-9)) * 1e9
-    0.248...
+    frame : Frame
+    rays : array (rows, columns, 3)
+        Unit directions by the measured pose.
+    line : WaterLine
+        The water's level.
+    unknown : Unknown
+        What is not known of the water where a ray meets it.
+    scattering : Scattering
+        What has been corrected.
     """
-    counts, variance = np.maximum(counts, 1.0), (counts / np.maximum(snr, 0.1)) ** 2
-    noise = np.maximum(variance - counts, 0.0)
-    weighted = MATCHED_ALONE * counts + MATCHED_OVER_NOISE * noise
-    return np.asarray(pulse_sigma * np.sqrt(weighted) / counts)
+
+    frame: Frame
+    rays: FloatArray
+    line: WaterLine
+    unknown: Unknown
+    scattering: Scattering
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,34 +70,122 @@ class Budget:
 
     Parameters
     ----------
+    camera : Camera
     pulse_sigma : float
         Standard deviation of the pulse as the detector sees it [s].
-    group_index : float
+    refractive_index, group_index : float
         Of the water [1].
-    pixel_tangent : float
-        Side of a pixel in the tangent plane [1].
+    pose : PoseUncertainty
+        Of navigation, boresight and lever arm.
+    level_error : float
+        Standard deviation of the water level where no echoes tell it [m].
     """
 
+    camera: Camera
     pulse_sigma: float
+    refractive_index: float
     group_index: float
-    pixel_tangent: float
+    pose: PoseUncertainty
+    level_error: float
 
-    def applied(self, cloud: PointCloud, *, frame: Frame) -> PointCloud:
+    def applied(self, cloud: PointCloud, around: Surroundings) -> PointCloud:
         """Return the points of a frame with their uncertainties."""
+        if len(cloud) == 0:
+            return cloud
+        effects = self.effects(cloud, around)
+        slope, roughness = _bed(cloud, around.rays.shape[:2])
+        effects[Cause.RELIEF] = _hidden_relief(roughness, effects)
+        vectors = np.concatenate(list(effects.values()))
+        vertical = vectors[..., 2] - np.sum(vectors[..., :2] * slope, axis=-1)
+        covariance = np.einsum("kni,knj->nij", vectors[..., :2], vectors[..., :2])
         placed = cloud.classification != PointClass.NO_BOTTOM_FOUND
-        to_point = cloud.position - frame.measured.position
-        cosine = -to_point[:, 2] / np.linalg.norm(to_point, axis=-1)
-        noise = time_noise(
+        tvu = WITHIN_95 * np.sqrt(np.sum(vertical**2, axis=0))
+        thu = radius_95(covariance=covariance, half_side=self._half_pixel(cloud, around))
+        return replace(
+            cloud,
+            tvu=np.where(placed, tvu, np.nan).astype(np.float32),
+            thu=np.where(placed, thu, np.nan).astype(np.float32),
+        )
+
+    def effects(self, cloud: PointCloud, around: Surroundings) -> dict[Cause, FloatArray]:
+        """Return the vectors (k, n, 3) of each effect but relief."""
+        wet, moves = cloud.depth > 0.0, self.displacements(cloud, around)
+        late = self.late(cloud)
+        height, tilt = moves.of_level(), moves.of_slopes()
+        return {
+            Cause.RANGE_NOISE: (moves.of_time() * late[:, None])[None],
+            Cause.SCATTERING: _scattering(cloud, around, moves.rays) * wet[:, None],
+            Cause.WAVES: np.concatenate(
+                [tilt * around.unknown.slope, height[None] * around.unknown.height]
+            ),
+            Cause.NAVIGATION: moves.of_pose(self.pose),
+            Cause.WATER_LEVEL: height[None] * self._level_error(around.line),
+        }
+
+    def displacements(self, cloud: PointCloud, around: Surroundings) -> Displacements:
+        """Return where errors move the points of a frame."""
+        return Displacements(
+            camera=self.camera,
+            frame=around.frame,
+            row=cloud.row,
+            column=cloud.column,
+            time=cloud.time - around.frame.time,
+            wet=cloud.depth > 0.0,
+            level=around.line.level,
+            refractive_index=self.refractive_index,
+            group_index=self.group_index,
+        )
+
+    def late(self, cloud: PointCloud) -> FloatArray:
+        """Return the standard deviation of the points' times by counting noise (n,) [s]."""
+        return time_noise(
             counts=cloud.counts.astype(np.float64),
             snr=cloud.snr.astype(np.float64),
             pulse_sigma=self.pulse_sigma,
         )
-        wet = cloud.depth > 0.0
-        along = 0.5 * speed_of_light * noise / np.where(wet, self.group_index, 1.0)
-        vertical = WITHIN_95 * along * cosine
-        footprint = SQUARE_WITHIN_95 * 0.5 * self.pixel_tangent * -to_point[:, 2]
-        return replace(
-            cloud,
-            tvu=np.where(placed, vertical, np.nan).astype(np.float32),
-            thu=np.where(placed, footprint, np.nan).astype(np.float32),
-        )
+
+    def _level_error(self, line: WaterLine) -> float:
+        """Return the standard error of the level that the median of first echoes tells [m]."""
+        if not line.measured:
+            return self.level_error
+        elevation = line.first[..., 2][line.on_water]
+        return MEDIAN_OVER_MEAN * float(elevation.std()) / float(np.sqrt(elevation.size))
+
+    def _half_pixel(self, cloud: PointCloud, around: Surroundings) -> FloatArray:
+        """Return half the side of the pixels' footprints; in water they widen by 1 / n less."""
+        height = around.frame.measured.position[2] - cloud.position[:, 2]
+        reach = height - cloud.depth * (1.0 - 1.0 / self.refractive_index)
+        return np.asarray(0.5 * self.camera.pixel_tangent * reach)
+
+
+def _bed(cloud: PointCloud, shape: tuple[int, ...]) -> tuple[FloatArray, FloatArray]:
+    """Return slope (n, 2) [1] and roughness (n,) [m] that neighbouring points of a frame show."""
+    pixel = cloud.row, cloud.column
+    places, used = np.full((*shape, 3), np.nan), np.zeros(shape, np.bool_)
+    places[pixel] = cloud.position
+    used[pixel] = cloud.classification != PointClass.NO_BOTTOM_FOUND
+    planes = fitted_planes(places=places, used=used, width=NEIGHBOURHOOD)
+    return np.nan_to_num(planes.slope[pixel]), planes.roughness[pixel]
+
+
+def _hidden_relief(roughness: FloatArray, effects: Effects) -> FloatArray:
+    """Return the vectors (1, n, 3) of the relief that a footprint may hide.
+
+    Assumed as large as what points show about the plane through their neighbours beyond the errors
+    that each pixel has of its own: counting noise, waves and the Monte Carlo's.
+    """
+    own = np.concatenate([effects[one] for one in OF_A_PIXEL])[..., 2]
+    vectors = np.zeros((1, len(roughness), 3))
+    vectors[0, :, 2] = np.sqrt(np.maximum(roughness**2 - np.sum(own**2, axis=0), 0.0))
+    return vectors
+
+
+def _scattering(cloud: PointCloud, around: Surroundings, rays: FloatArray) -> FloatArray:
+    """Return what is left of scattering's errors: residual, and a part of what was corrected."""
+    table, depth = around.scattering, cloud.depth
+    tangents = rays[:, :2] / -rays[:, 2:]
+    vectors = np.zeros((3, len(cloud), 3))
+    vectors[0, :, 2] = table.at("residual", depth)
+    vectors[1, :, 2] = WATER_KNOWN * table.elevation_error(depth=depth, tangent=off_nadir(rays))
+    vectors[2, :, :2] = WATER_KNOWN * table.at("shift", depth)[:, None] * tangents
+    return vectors

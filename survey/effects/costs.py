@@ -53,6 +53,8 @@ class Cost:
 def costs(scenario: Scenario, *, frames: range | None = None, workers: int = 0) -> Iterator[Cost]:
     """Fly a mission as it is and without each of its effects, and yield the figures.
 
+    What scattered light does to the bottom stays uncorrected: else its cost would not show.
+
     Parameters
     ----------
     scenario : Scenario
@@ -66,6 +68,7 @@ def costs(scenario: Scenario, *, frames: range | None = None, workers: int = 0) 
     ValueError
         When a mission cannot be flown.
     """
+    scenario = scenario.replace(**{"processing.correct_scattering": False})
     whole = _flown_sums(scenario, frames, workers)
     yield cost(AS_IT_IS, whole, whole)
     for name, changes in effects(scenario).items():

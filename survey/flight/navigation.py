@@ -122,6 +122,67 @@ class Navigation:
         return tuple(getattr(self, name).deviation for name in QUANTITIES)
 
 
+@dataclass(frozen=True, kw_only=True)
+class PoseUncertainty:
+    """Standard deviations of the sensor's measured pose.
+
+    Constant errors count with their size: their sign is not known to the survey.
+
+    Parameters
+    ----------
+    position : tuple of float
+        East, north, up [m].
+    lever_arm : tuple of float
+        Forward, right, down [m].
+    roll, pitch, heading : float
+        Of navigation and boresight together [rad].
+    """
+
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    lever_arm: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    roll: float = 0.0
+    pitch: float = 0.0
+    heading: float = 0.0
+
+    @classmethod
+    def of(cls, navigation: Navigation) -> PoseUncertainty:
+        """Return that of a navigation with its mounting.
+
+        Examples
+        --------
+        >>> gnss = NavigationError(bias=0.03, white=0.04)
+        >>> PoseUncertainty.of(Navigation(up=gnss, roll=gnss)).position
+        (0.0, 0.0, 0.05)
+        """
+        true, believed = navigation.mounting, navigation.believed_mounting
+        east, north, up, roll, pitch, heading = (
+            float(np.hypot(error.bias, error.deviation))
+            for error in (getattr(navigation, name) for name in QUANTITIES)
+        )
+        forward, right, down = np.subtract(true.lever_arm, believed.lever_arm).tolist()
+        return cls(
+            position=(east, north, up),
+            lever_arm=(forward, right, down),
+            roll=float(np.hypot(roll, true.roll - believed.roll)),
+            pitch=float(np.hypot(pitch, true.pitch - believed.pitch)),
+            heading=float(np.hypot(heading, true.heading - believed.heading)),
+        )
+
+    @property
+    def position_errors(self) -> FloatArray:
+        """Vectors (3, 3) on the map, one for each standard deviation [m]."""
+        return np.diag(self.position)
+
+    def lever_errors(self, pose: Pose) -> FloatArray:
+        """Return the same of the lever arm of a sensor at a pose [m]."""
+        return np.asarray(np.diag(self.lever_arm) @ pose.body_to_map().T)
+
+    @property
+    def attitude_errors(self) -> dict[str, float]:
+        """Standard deviations by the names of `Pose` [rad]."""
+        return {"roll": self.roll, "pitch": self.pitch, "heading": self.heading}
+
+
 def navigated(
     frames: Sequence[Frame], navigation: Navigation, chances: Sequence[np.random.Generator]
 ) -> list[Frame]:

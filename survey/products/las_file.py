@@ -55,6 +55,7 @@ EXTRA_BYTES: tuple[tuple[str, type[np.generic], str], ...] = (
     ("true_reflectance", np.float32, "of what is truly there"),
     ("true_class", np.uint8, "class of what is truly there"),
     ("substrate", np.uint8, "true bottom, see metrics.json"),
+    ("cause", np.uint8, "of error: docs/uncertainty.md"),
 )
 RETURNS = {
     PointClass.WATER_SURFACE: (1, 2),
@@ -215,6 +216,7 @@ def read_laz(path: Path, map_frame: MapFrame, *, start_utc: datetime) -> PointCl
         surface_elevation=np.array(las.surface_z),
         reflectance=np.array(las.reflectance),
         true_reflectance=np.array(las.true_reflectance),
+        cause=np.array(las.cause),
         time=np.asarray(las.gps_time) - adjusted_gps_time(start_utc, np.zeros(1)),
         depth=np.array(las.depth_m, dtype=np.float64),
         counts=np.array(las.counts),
@@ -333,6 +335,7 @@ def _extra_columns(cloud: PointCloud, map_frame: MapFrame) -> dict[str, NDArray[
         "true_elevation": _compressible(cloud.true_elevation),
         "true_class": cloud.true_classification,
         "substrate": cloud.substrate,
+        "cause": cloud.cause,
     }
 
 

@@ -41,6 +41,7 @@ PLY_RECORD = np.dtype(
         ("classification", "u1"),
         ("true_class", "u1"),
         ("substrate", "u1"),
+        ("cause", "u1"),
     ]
 )
 COUNT_DIGITS = 20
@@ -65,6 +66,7 @@ COLUMNS = {
     "classification": "classification",
     "true_classification": "true_class",
     "substrate": "substrate",
+    "cause": "cause",
 }
 """Names in the file of the scalar columns of a cloud."""
 

@@ -41,6 +41,7 @@ from survey.products.tif_file import bathymetry_tif
 from survey.products.tile_points import TilePoints, tile_points
 from survey.products.track_files import TrackFormat, write_trajectory_files
 from survey.products.trajectory_file import write_trajectory_csv
+from survey.products.uncertainty_check import UncertaintyTally
 from survey.products.verdict.features import Cube
 from survey.products.verdict.mission import VerdictTally
 from survey.products.verdict.report import verdict_section
@@ -170,6 +171,11 @@ def write_products(
         reach=settings.reach,
         cubes=settings.cubes,
     )
+    uncertainty = UncertaintyTally(
+        frames=frames,
+        pixel_tangent=settings.camera.pixel_tangent,
+        refractive_index=settings.water.refractive_index,
+    )
     with (
         _point_files(folder, look, frames, map_frame, settings) as add_points,
         bathymetry_tif(folder / "bathymetry.tif", raster, map_frame) as add_cells,
@@ -186,6 +192,7 @@ def write_products(
             overview.add(grid)
             coverage.add(part.looked_at, part.outcomes, part.tile.cells)
             accuracy.add(part.bottom, part.surface)
+            uncertainty.add(part.bottom)
             substrates.add_points(part.bottom)
             verdict.add(part)
     found = accuracy.metrics(
@@ -193,6 +200,7 @@ def write_products(
     )
     found["strip_adjustment"] = settings.strip_adjustment
     found["overlaps"] = overlap_metrics(overlaps.overlaps())
+    found |= uncertainty.metrics()
     found["substrates"] = substrates.metrics(seabed.substrate_names)
     covered = with_shadows(
         coverage.map(),

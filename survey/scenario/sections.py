@@ -138,8 +138,10 @@ class Processing(Section):
     `ranging` is how the bottom is looked for: by a matched filter, weak echoes together with their
     neighbours, or by the threshold of [Lisenko2017] in each pixel alone.
 
-    `water_level_error_m` is how far the level that is expected, before the first echoes tell it,
-    lies above the true one. Thresholds are made for the water with its layers, unless
+    Rays bend at the `mean_level` of the water or at `local_waves`, planes through neighbouring
+    first echoes. `correct_scattering` takes from the ranges what scattered light is expected to do
+    to them. `water_level_error_m` is how far the level that is expected, before the first echoes
+    tell it, lies above the true one. Thresholds are made for the water with its layers, unless
     `expects_layers` is false: then for that of [water] alone. `keep_waveforms` keeps the detector's
     histograms and time tags in the frames' files: of one pixel in 8 x 8, or of all.
     """
@@ -148,6 +150,8 @@ class Processing(Section):
     false_alarm_rate: Annotated[float, Field(gt=0.0, lt=1.0)] = 1e-3
     echo_gate_ns: Positive | None = None
     expects_layers: bool = True
+    refraction: Literal["mean_level", "local_waves"] = "mean_level"
+    correct_scattering: bool = True
     water_level_error_m: Annotated[float, Field(ge=-10.0, le=10.0)] = 0.0
     thinning_m: NotNegative = 1.0
     grid_m: Positive = 2.0

@@ -12,9 +12,9 @@ import pytest
 from numpy.typing import NDArray
 from scipy.constants import speed_of_light
 
+from survey.cloud.echo import Echo
 from survey.cloud.georeference import pixel_rays
 from survey.cloud.points import Outcome, PixelRecord, PointClass, PointCloud
-from survey.cloud.ranging import Echo
 from survey.cloud.truth import TrueTargets, true_targets
 from survey.flight.pose import Frame, Pose
 from survey.optics.water import WaterColumn, petzold_water
@@ -145,6 +145,7 @@ def _cloud(
         surface_elevation=np.full(n, 0.25),
         reflectance=np.linspace(0.0, 10.0, n, dtype=np.float32),
         true_reflectance=np.full(n, 0.1, np.float32),
+        cause=(np.arange(n) % 7).astype(np.uint8),
         time=np.full(n, frame.time),
         depth=np.maximum(0.25 - position[:, 2], 0.0),
         counts=np.linspace(0.0, 1e5, n, dtype=np.float32),

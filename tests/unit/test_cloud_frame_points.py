@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from survey.cloud.frame_points import WaterLine, bottom_points, find_water, surface_points
 from survey.cloud.points import PointClass, PointCloud
+from survey.cloud.scattering import Scattering
 
 Looks = Callable[..., Any]
 FloatArray = NDArray[np.float64]
@@ -41,6 +42,7 @@ def bottom_of(look: Any, bottom_time: FloatArray, first_time: FloatArray) -> Poi
         targets=look.targets,
         seabed=look.seabed,
         group_index=look.water.group_index,
+        scattering=Scattering.none(),
     )
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from survey.cloud.frame_points import bottom_points, find_water
 from survey.cloud.georeference import bend_at_surface, pixel_rays, place_in_air
 from survey.cloud.points import PointCloud
+from survey.cloud.scattering import Scattering
 from survey.cloud.truth import true_targets
 from survey.flight.navigation import Mounting, Navigation, NavigationError, navigated
 from survey.flight.plan import FlightPlan
@@ -235,6 +236,7 @@ def georeferenced(look: Any, navigation: Navigation) -> PointCloud:
         targets=targets,
         seabed=look.seabed,
         group_index=look.water.group_index,
+        scattering=Scattering.none(),
     )
 
 

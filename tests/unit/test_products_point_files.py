@@ -141,7 +141,7 @@ def test_extra_bytes_are_described(small_survey: Any, tmp_path: Path) -> None:
     wanted += ["true_elevation", *(f"true_surface_{axis}" for axis in "xyz")]
     wanted += [*(f"true_normal_{axis}" for axis in "xyz"), "true_water_path"]
     wanted += ["total_thu", "total_tvu", "surface_z", "reflectance", "true_reflectance"]
-    assert list(extra) == [*wanted, "true_class", "substrate"]
+    assert list(extra) == [*wanted, "true_class", "substrate", "cause"]
     assert all(4 < len(dimension.description) <= 32 for dimension in extra.values())
 
 

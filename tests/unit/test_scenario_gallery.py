@@ -47,7 +47,7 @@ def test_every_scenario_is_sound_and_says_what_to_expect(name: str) -> None:
 def test_the_gallery_is_complete() -> None:
     names = {"measured-seabed", "sandbar", "wreck", "turned-footprint", "too-deep"}
     names |= {"rolling-aircraft", "area-survey", "harbor-wreck", "reef-with-swell"}
-    names |= {"turbid-layer", "next-generation", "special-order", "boresight"}
+    names |= {"turbid-layer", "next-generation", "special-order", "boresight", "every-effect"}
     assert names | PAPER.keys() <= gallery().keys()
 
 

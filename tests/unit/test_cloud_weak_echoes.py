@@ -10,11 +10,11 @@ import pytest
 from scipy.special import ndtr
 
 from survey.cloud.bottom_search import ThresholdSearch
-from survey.cloud.causes import weak_causes
 from survey.cloud.noise import NoiseModel, RangingSettings
 from survey.cloud.points import Outcome, PointClass
 from survey.cloud.ranging import bottom_detection_probability
 from survey.cloud.truth import TrueTargets
+from survey.cloud.weak_echoes import weak_causes
 from survey.optics.water import WaterColumn, petzold_water
 from survey.sensor.ideal import IdealCounter
 from survey.transport.waveforms import pulse_taps

@@ -1,0 +1,169 @@
+"""What scattered light does to a point: it comes late, and from nearer to nadir."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from survey.cloud.echo import Echo
+
+FloatArray = NDArray[np.float64]
+
+ANGLES = 16
+OUTLIERS = 4.0  # deviations, from quartiles: merged with the surface, or false
+
+
+@dataclass(frozen=True, kw_only=True)
+class LevelBottom:
+    """What the expected light of a flash over a level bottom is measured to be; n pixels.
+
+    Parameters
+    ----------
+    depth : float
+        Of the bottom [m].
+    tangent : array (n,)
+        Of the angles off nadir in air [1].
+    error : array (n,)
+        Measured less true elevation [m].
+    along : array (n,)
+        Tangents along one axis of the camera [1].
+    origin : array (n,)
+        Mean place along that axis where the light was reflected, less that which the pixel's
+        centre looks at [m].
+    surface_late : array (n,)
+        Time of the first echo less that of the water [s].
+    """
+
+    depth: float
+    tangent: FloatArray
+    error: FloatArray
+    along: FloatArray
+    origin: FloatArray
+    surface_late: FloatArray
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scattering:
+    """Expected errors by measured depth; arrays (depths,).
+
+    Parameters
+    ----------
+    depth : array
+        Measured depth [m], growing.
+    bias, bias_slant : array
+        Measured less true elevation at nadir, and what the squared tangent of the angle off nadir
+        in air adds [m].
+    shift : array
+        How much nearer to nadir light was reflected than the pixel's centre looks, over the
+        tangent [m].
+    residual : array
+        Standard deviation of a pixel's elevation about bias and slant [m]: the Monte Carlo error
+        of a flash, and what the rim of the light does.
+    surface_tangent : array (angles,)
+        Tangents of angles off nadir, growing [1].
+    surface_late : array (angles,)
+        How much later than the water the first echo is told there, for light of the water under
+        the surface adds to it [s].
+
+    Examples
+    --------
+    >>> none = Scattering.none()
+    >>> none.elevation_error(depth=np.array([3.0]), tangent=np.array([0.2])).tolist()
+    [0.0]
+    """
+
+    depth: FloatArray
+    bias: FloatArray
+    bias_slant: FloatArray
+    shift: FloatArray
+    residual: FloatArray
+    surface_tangent: FloatArray
+    surface_late: FloatArray
+
+    @classmethod
+    def none(cls) -> Scattering:
+        """Return what water without scattering does: nothing."""
+        return cls(**{field.name: np.zeros(1) for field in fields(cls)})
+
+    @classmethod
+    def fitted(cls, bottoms: Sequence[LevelBottom]) -> Scattering:
+        """Return the errors over bottoms of growing depth, by least squares over their pixels."""
+        if not bottoms:
+            return cls.none()
+        rows = [_fit(bottom) for bottom in bottoms]
+        tangent, late = _surface(bottoms[-1])
+        return cls(
+            **{name: np.array([row[name] for row in rows]) for name in rows[0]},
+            surface_tangent=tangent,
+            surface_late=late,
+        )
+
+    def at(self, name: str, depth: FloatArray) -> FloatArray:
+        """Return a column at measured depths: straight between the table's, constant beyond."""
+        return np.asarray(np.interp(depth, self.depth, getattr(self, name)))
+
+    def elevation_error(self, *, depth: FloatArray, tangent: FloatArray) -> FloatArray:
+        """Return measured less true elevation that is to be expected [m]."""
+        return self.at("bias", depth) + self.at("bias_slant", depth) * tangent**2
+
+    def on_time(self, first: Echo, rays: FloatArray) -> Echo:
+        """Return first echoes as early as the water is, along rays (rows, columns, 3) in air."""
+        late = np.interp(off_nadir(rays), self.surface_tangent, self.surface_late)
+        return replace(first, time=first.time - late)
+
+    def corrected(self, position: FloatArray, *, rays: FloatArray, level: float) -> FloatArray:
+        """Return places in water (..., 3) without the errors to be expected.
+
+        Parameters
+        ----------
+        position : array (..., 3)
+            Measured [m].
+        rays : array (..., 3)
+            Unit directions from the sensor, in air.
+        level : float
+            Elevation of the water [m].
+
+        Examples
+        --------
+        >>> table = replace(Scattering.none(), bias=np.array([-0.1]), shift=np.array([0.5]))
+        >>> table.corrected(np.array([40.0, 0.0, -5.0]), rays=np.array([0.2, 0.0, -1.0]),
+        ...                 level=0.0).tolist()
+        [39.9, 0.0, -4.9]
+        """
+        depth = level - position[..., 2]
+        tangents = rays[..., :2] / -rays[..., 2:]
+        error = np.empty_like(position)
+        error[..., :2] = self.at("shift", depth)[..., None] * tangents
+        error[..., 2] = self.elevation_error(depth=depth, tangent=off_nadir(rays))
+        return np.asarray(position - error)
+
+
+def off_nadir(rays: FloatArray) -> FloatArray:
+    """Return the tangents of the angles off nadir of rays (..., 3) [1]."""
+    return np.asarray(np.hypot(rays[..., 0], rays[..., 1]) / -rays[..., 2])
+
+
+def _surface(bottom: LevelBottom) -> tuple[FloatArray, FloatArray]:
+    """Return the median lateness of the first echo by tangent, in classes of equal number."""
+    classes = np.array_split(np.argsort(bottom.tangent), ANGLES)
+    middle = [[np.median(each[one]) for one in classes] for each in
+              (bottom.tangent, bottom.surface_late)]  # fmt: skip
+    return np.array(middle[0]), np.array(middle[1])
+
+
+def _fit(bottom: LevelBottom) -> dict[str, float]:
+    """Return a row of the table; outliers of the errors are left out."""
+    low, middle, high = np.percentile(bottom.error, [25.0, 50.0, 75.0])
+    kept = np.abs(bottom.error - middle) <= OUTLIERS * max(high - low, 1e-6)
+    square, error = bottom.tangent[kept] ** 2, bottom.error[kept]
+    slant, bias = np.polyfit(square, error, 1)
+    return {
+        "depth": bottom.depth - float(error.mean()),
+        "bias": float(bias),
+        "bias_slant": float(slant),
+        "shift": -float((bottom.along @ bottom.origin) / (bottom.along @ bottom.along)),
+        "residual": float((error - bias - slant * square).std()),
+    }

@@ -1,0 +1,155 @@
+"""What scattering does to the points of a mission, told by flashes over level bottoms."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from survey.cloud.bottom_search import BottomSearch
+from survey.cloud.georeference import WaterPath, bend_at_surface, pixel_rays, place_in_water
+from survey.cloud.noise import NoiseModel, gate_sums
+from survey.cloud.ranging import first_echo
+from survey.cloud.scattering import LevelBottom, Scattering, off_nadir
+from survey.flight.pose import Frame
+from survey.sensor.camera import Camera
+from survey.transport.engine import Engine
+from survey.transport.waveforms import Waveforms
+from terrain.generators import Ground, plane
+from terrain.map_frame import MapFrame
+from terrain.seabed import Seabed
+
+FloatArray = NDArray[np.float64]
+
+FIRST_FRAME = (1 << 31) + 64
+SHALLOWEST, DEPTHS, DEEPENING = 2.0, 6, 1.7
+REFLECTANCE = 0.15  # assumed: sand
+CELL = 1.0  # [m]
+BEYOND = 25.0  # how far the bottom goes on beyond the view [m]
+ENOUGH = 0.5  # share of pixels with an echo
+
+
+@dataclass(frozen=True, kw_only=True)
+class LevelBottoms:
+    """Flashes over level bottoms in the expected water, and the ranging that a mission uses.
+
+    A bottom whose reflectance grows along an axis, lit and seen by the same walks as an even one,
+    tells by its brightness where on the axis the light of a pixel was reflected.
+
+    Parameters
+    ----------
+    engine : callable
+        From a seabed to the engine over it.
+    search : type
+        How the mission looks for the bottom.
+    noise : NoiseModel
+        Of the level sensor.
+    frame : Frame
+        A level pose over the origin.
+    camera : Camera
+    level : float
+        Elevation of the water [m].
+    map_frame : MapFrame
+        Of the seabeds.
+    """
+
+    engine: Callable[[Seabed], Engine]
+    search: type[BottomSearch]
+    noise: NoiseModel
+    frame: Frame
+    camera: Camera
+    level: float
+    map_frame: MapFrame
+
+    def expected_errors(self) -> Scattering:
+        """Return the table; it ends where half of the pixels have no echo."""
+        return Scattering.fitted(list(self._bottoms()))
+
+    def _bottoms(self) -> Iterator[LevelBottom]:
+        for number in range(DEPTHS):
+            bottom = self._bottom(SHALLOWEST * DEEPENING**number, FIRST_FRAME + number)
+            if bottom is None:
+                return
+            yield bottom
+
+    def _bottom(self, depth: float, number: int) -> LevelBottom | None:
+        even = self._even_bed(depth)
+        engine, pose = self.engine(even), self.frame.pose
+        rays = pixel_rays(camera=self.camera, pose=pose)
+        light = engine.flash(pose=pose, frame=number)
+        path = bend_at_surface(
+            position=pose.position,
+            rays=rays,
+            level=self.level,
+            refractive_index=engine.water.refractive_index,
+        )
+        late, measured = self._measured(engine, light, path)
+        found = np.isfinite(measured) & np.isfinite(late)
+        if found.mean() < ENOUGH:
+            return None
+        forward, right, _ = pose.body_to_map().T
+        axis = (forward if self.camera.long_side == "along" else right)[:2]
+        brighter = self.engine(_growing(even, axis, self._half_length)).flash(
+            pose=pose, frame=number
+        )
+        origin = self._half_length * (self._gain(brighter, light) - 1.0)
+        tangents = rays[..., :2] / -rays[..., 2:]
+        centre = path.entry + path.direction * (depth / -path.direction[..., 2])[..., None]
+        return LevelBottom(
+            depth=depth,
+            tangent=off_nadir(rays)[found],
+            error=measured[found] - (self.level - depth),
+            along=(tangents @ axis)[found],
+            origin=(origin - centre[..., :2] @ axis)[found],
+            surface_late=late[found],
+        )
+
+    def _even_bed(self, depth: float) -> Seabed:
+        ground = Ground(
+            map_frame=self.map_frame,
+            length=2.0 * self._half_length,
+            width=2.0 * self._half_length,
+            axis=self.frame.pose.heading,
+            reflectance=REFLECTANCE,
+        )
+        return plane(ground=ground, depth=depth - self.level, spacing=CELL)
+
+    @property
+    def _half_length(self) -> float:
+        """How far the beds reach from nadir [m]."""
+        height = self.frame.pose.position[2] - self.level
+        return float(max(self.camera.half_tangents) * height + BEYOND)
+
+    def _measured(
+        self, engine: Engine, light: Waveforms, path: WaterPath
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return lateness of the surface [s] and elevation of the bottom [m] by the mean readings.
+
+        The bottom's is told from water at its true level.
+        """
+        noise = self.noise
+        counts = noise.detector.mean(light.total + noise.steady_light)
+        first = first_echo(counts=counts, noise=noise)
+        search = self.search.over(
+            noise=noise, variance=light.variance[:2].sum(axis=0), surface_time=path.air_time
+        )
+        bottom = search.echo(counts)
+        place = place_in_water(path=path, time=bottom.time, group_index=engine.water.group_index)
+        return first.time - path.air_time, place[..., 2]
+
+    def _gain(self, brighter: Waveforms, light: Waveforms) -> FloatArray:
+        """Return by how much the bottom is brighter in the strongest gate of each pixel."""
+        sums, more = (
+            gate_sums(each.origin("bottom"), self.noise.gate_bins) for each in (light, brighter)
+        )
+        best = sums.argmax(axis=-1)[..., None]
+        here, there = (np.take_along_axis(each, best, -1)[..., 0] for each in (sums, more))
+        return np.asarray(there / here)
+
+
+def _growing(bed: Seabed, axis: FloatArray, reach: float) -> Seabed:
+    """Return a bed whose reflectance grows along an axis from 0 to twice its own at a reach."""
+    place = bed.mesh.triangles_center[:, :2] @ axis
+    return replace(bed, reflectance=bed.reflectance * (1.0 + place / reach))
