@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -343,13 +344,39 @@ def test_three_lines_tell_errors_coverage_and_reach(small_survey: Any) -> None:
     }
     errors, coverage, reached = verdict_lines(metrics)
     assert errors.startswith("Order 1a passes on all that is assessable")
-    assert "95 % of bottom errors within 0.1" in errors
-    assert "allowed 0.5" in errors
+    assert "Depth errors come nearest to its limit at" in errors
+    assert re.search(r"95 % of \d+ points within 0\.1\d m, 0\.5\d m allowed", errors)
     assert coverage == "coverage: 100 % of the wet area was seen"
     assert reached == (
         "bottom reached by nine pixels in ten down to 7.0 m: 0.47 Secchi depths (of 14.8 m), "
         "K_d z 1.33"
     )
+
+
+def test_what_keeps_the_next_stricter_order_from_passing_is_told() -> None:
+    row = {
+        **{"from_depth_m": 0.0, "to_depth_m": 1.0, "points": 290, "share": 1.0},
+        **{"limit_m": 1.0, "p95_abs_error_m": 0.73},
+    }
+    depth = {"result": "pass", "by_depth": [row], "reason": "at 0 to 1 m all"}
+    asked = {"limit": None, "reason": "88 % was seen"}
+    criteria = {"tvu": depth, "coverage": asked, "feature_search": asked}
+    passed = {"title": "Order 2", "result": "pass", "failed": [], "not_assessable": []}
+    failed = {"title": "Order 1b", "result": "fail", "failed": ["tvu"], "not_assessable": []}
+    orders = {
+        "order_1b": failed | {"criteria": criteria | {"tvu": {"reason": "at 0 to 1 m 17 %"}}},
+        "order_2": passed | {"criteria": criteria},
+    }
+    metrics: dict[str, Any] = {"found_depth_m": None}
+    s44 = {"judged": "order_2", "asked": None, "orders": orders}
+    first, stricter, *rest = verdict_lines(metrics | {"s44": s44})
+    assert first == (
+        "Order 2 passes. Depth errors come nearest to its limit at 0 to 1 m: 95 % of 290 points "
+        "within 0.73 m, 1.00 m allowed"
+    )
+    assert stricter == "Order 1b fails: depth error (TVU): at 0 to 1 m 17 %"
+    assert len(rest) == 2
+    assert len(verdict_lines(metrics | {"s44": s44 | {"asked": "order_2"}})) == 3
 
 
 def test_cubes_outside_the_area_are_nobody_s_fault(small_survey: Any) -> None:

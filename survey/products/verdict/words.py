@@ -1,4 +1,4 @@
-"""The verdict in words: three lines for the terminal."""
+"""The verdict in words: a few lines for the terminal."""
 
 from __future__ import annotations
 
@@ -42,11 +42,15 @@ def verdict_sentence(order: Mapping[str, Any]) -> str:
     return f"{text}; not assessable: {unknown}" if unknown else text
 
 
-def verdict_lines(metrics: Mapping[str, Any]) -> tuple[str, str, str]:
-    """Return errors, coverage and depth reached, each against the order, in a line of its own."""
+def verdict_lines(metrics: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return errors, coverage and depth reached, each against the order, in a line of its own.
+
+    Where no order was asked for, one more line says what keeps the next stricter one from passing.
+    """
     order = judged(metrics)
     return (
         f"{verdict_sentence(order)}. {_errors(order['criteria']['tvu'])}",
+        *_stricter(metrics["s44"]),
         f"coverage: {_coverage(order['criteria'])}",
         f"bottom reached {_reached(metrics)}",
     )
@@ -58,9 +62,23 @@ def _errors(tvu: Mapping[str, Any]) -> str:
     worst = min(tvu["by_depth"], key=badness)
     p95 = worst["p95_abs_error_m"]
     within = "not even within 5 m" if p95 is None else f"within {p95:.2f} m"
+    how = "come nearest to" if tvu["result"] == "pass" else "are furthest beyond"
     return (
-        f"95 % of bottom errors {within} at {depth_range(worst)}, allowed {worst['limit_m']:.2f} m"
+        f"Depth errors {how} its limit at {depth_range(worst)}: 95 % of {worst['points']} points "
+        f"{within}, {worst['limit_m']:.2f} m allowed"
     )
+
+
+def _stricter(s44: Mapping[str, Any]) -> list[str]:
+    """Return why the order before the one that passed does not pass."""
+    keys = list(s44["orders"])
+    place = keys.index(s44["judged"])
+    if s44["asked"] or place == 0 or s44["orders"][s44["judged"]]["result"] != "pass":
+        return []
+    order = s44["orders"][keys[place - 1]]
+    unmet = [*order["failed"], *order["not_assessable"]]
+    reasons = "; ".join(str(order["criteria"][name]["reason"]) for name in unmet)
+    return [f"{verdict_sentence(order)}: {reasons}"]
 
 
 def _coverage(criteria: Mapping[str, Any]) -> str:
