@@ -95,6 +95,7 @@ class LevelBottoms:
             pose=pose, frame=number
         )
         origin = self._half_length * (self._gain(brighter, light) - 1.0)
+        found &= np.isfinite(origin)
         tangents = rays[..., :2] / -rays[..., 2:]
         centre = path.entry + path.direction * (depth / -path.direction[..., 2])[..., None]
         return LevelBottom(
@@ -140,13 +141,16 @@ class LevelBottoms:
         return first.time - path.air_time, place[..., 2]
 
     def _gain(self, brighter: Waveforms, light: Waveforms) -> FloatArray:
-        """Return by how much the bottom is brighter in the strongest gate of each pixel."""
+        """Return by how much the bottom is brighter in the strongest gate of each pixel.
+
+        nan where the bottom sends no light at all.
+        """
         sums, more = (
             gate_sums(each.origin("bottom"), self.noise.gate_bins) for each in (light, brighter)
         )
         best = sums.argmax(axis=-1)[..., None]
         here, there = (np.take_along_axis(each, best, -1)[..., 0] for each in (sums, more))
-        return np.asarray(there / here)
+        return np.divide(there, here, out=np.full(here.shape, np.nan), where=here > 0.0)
 
 
 def _growing(bed: Seabed, axis: FloatArray, reach: float) -> Seabed:
