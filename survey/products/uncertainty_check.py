@@ -19,7 +19,9 @@ BOTTOM = (PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT)
 DEPTH_BIN = 2.0
 MILLIMETRES = 20_001
 PLACES = 5
-"""Places of a footprint along each side."""
+"""Places of a footprint along each side, one anywhere in each of as many strips."""
+SPREAD = (0.7548776662, 0.5698402910)
+"""Steps of points that fill a square evenly: 1 / p and 1 / p^2 with p^3 = p + 1 (Roberts 2018)."""
 
 
 class UncertaintyTally:
@@ -77,8 +79,8 @@ class UncertaintyTally:
         tvu_median_m, thu_median_m  medians of the uncertainties, to a millimetre
         tvu_coverage                share whose measured less true elevation at the measured place
                                     is within TVU
-        thu_coverage                share of all true places, 5 x 5 of each point's footprint as it
-                                    is seen without scattering, within THU of the measured place
+        thu_coverage                share of all true places, 25 of each point's footprint as it is
+                                    seen without scattering, within THU of the measured place
         uncertainty_by_depth        the same by 2 m of measured depth
         ==========================  ==============================================================
         """
@@ -94,7 +96,12 @@ class UncertaintyTally:
 def footprint_places(
     cloud: PointCloud, *, frames: Sequence[Frame], pixel_tangent: float, refractive_index: float
 ) -> FloatArray:
-    """Return places (n, 25, 2) evenly over the footprints about the points' true places [m]."""
+    """Return places (n, 25, 2) evenly over the footprints about the points' true places [m].
+
+    They are 5 x 5 with steps of a fifth of the side, pushed within a step by another part of it for
+    each point. Not pushed, none would lie in the corners, which are what a radius of 95 % leaves
+    out of a square.
+    """
     number = {frame.index: at for at, frame in enumerate(frames)}
     of_point = np.array([number[index] for index in cloud.frame.tolist()], dtype=np.intp)
     height = np.array([frame.pose.position[2] for frame in frames])[of_point]
@@ -102,8 +109,9 @@ def footprint_places(
     in_air = height - cloud.truth[:, 2] - cloud.depth * (1.0 - 1.0 / refractive_index)
     forward = np.column_stack([np.sin(heading), np.cos(heading)])
     right = np.column_stack([np.cos(heading), -np.sin(heading)])
-    steps = (np.arange(PLACES) + 0.5) / PLACES - 0.5
-    along, across = (each.ravel()[None, :, None] for each in np.meshgrid(steps, steps))
+    push = np.outer(np.arange(len(cloud)), SPREAD) % 1.0
+    strip = np.stack(np.divmod(np.arange(PLACES**2), PLACES), axis=-1)
+    along, across = np.moveaxis((strip + push[:, None]) / PLACES - 0.5, -1, 0)[..., None]
     offsets = along * forward[:, None] + across * right[:, None]
     return np.asarray(cloud.truth[:, None, :2] + (pixel_tangent * in_air)[:, None, None] * offsets)
 

@@ -19,7 +19,7 @@ from survey.cloud.time_noise import time_noise
 from survey.cloud.wave_statistics import WaveStatistics
 from survey.flight.navigation import PoseUncertainty
 from survey.flight.pose import Pose
-from survey.products.uncertainty_check import UncertaintyTally
+from survey.products.uncertainty_check import UncertaintyTally, footprint_places
 from survey.sensor.camera import Camera
 from terrain.waves import Swell, WaveField, WindSea
 
@@ -234,6 +234,28 @@ def test_coverage_is_that_of_drawn_errors(small_survey: Any) -> None:
     assert found["tvu_coverage"] == pytest.approx(0.95, abs=0.012)
     assert found["thu_coverage"] == pytest.approx(0.95, abs=0.015)
     assert sum(one["points"] for one in found["uncertainty_by_depth"]) == len(cloud)
+
+
+def test_places_fill_footprints_to_their_corners(small_survey: Any) -> None:
+    """The share within 1.2 half sides of the centre is that of the square's area: 95.1 %."""
+    within = 1.2
+    beyond = 4.0 * (within**2 * np.arccos(1.0 / within) - np.sqrt(within**2 - 1.0))
+    exact = (np.pi * within**2 - beyond) / 4.0
+    cloud = replace(
+        small_survey.bottom,
+        depth=np.zeros(len(small_survey.bottom)),
+        truth=small_survey.bottom.truth * [1.0, 1.0, 0.0],
+    )
+    places = footprint_places(
+        cloud, frames=small_survey.frames, pixel_tangent=0.008, refractive_index=INDEX
+    )
+    off = places - cloud.truth[:, None, :2]
+    height = np.mean([frame.pose.position[2] for frame in small_survey.frames])
+    half = 0.5 * 0.008 * height
+    assert np.mean(np.hypot(off[..., 0], off[..., 1]) <= within * half) == pytest.approx(
+        exact, abs=0.002
+    )
+    assert exact == pytest.approx(0.951, abs=0.0005)
 
 
 def test_no_bottom_has_no_coverage(small_survey: Any) -> None:
