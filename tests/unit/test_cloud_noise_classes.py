@@ -12,6 +12,7 @@ from survey.cloud.derived_surface import derived_surface
 from survey.cloud.frame_points import bottom_points, find_water, surface_points
 from survey.cloud.lone_echoes import SIDE, stands_alone, stands_high
 from survey.cloud.points import PointClass, PointCloud
+from survey.cloud.scattering import Scattering
 from survey.cloud.stitch import stitched
 
 Looks = Callable[..., Any]
@@ -35,6 +36,7 @@ def points_of(look: Any, first_time: Any, bottom_time: Any) -> tuple[PointCloud,
         targets=look.targets,
         seabed=look.seabed,
         group_index=look.water.group_index,
+        scattering=Scattering.none(),
     )
     return surface_points(**seen, targets=look.targets), bottom
 

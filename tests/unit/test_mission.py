@@ -29,8 +29,8 @@ from survey.sensor.detector import Readings
 PRODUCTS = {
     *("scenario.toml", "manifest.json", "journal.jsonl", "trajectory.csv", "bottom.laz"),
     *("water_surface.laz", "bottom.ply", "water_surface.ply", "bathymetry.tif", "bathymetry.glb"),
-    *("coverage.geojson", "failures.geojson", "metrics.json", "performance.json", "report.html"),
-    *("strip_differences.tif", "log.txt", ".lock"),
+    *("coverage.geojson", "failures.geojson", "lines.geojson", "metrics.json"),
+    *("performance.json", "report.html", "strip_differences.tif", "log.txt", ".lock"),
     *(f"frames/{number:06d}.npz" for number in range(3)),
 }
 DIFFERS_BY_RUN = {"performance.json", "journal.jsonl", "log.txt"}
@@ -144,7 +144,7 @@ def test_another_seed_is_another_survey(small: Scenario, tmp_path: Path) -> None
 
 @pytest.mark.parametrize(
     ("depth", "bins", "reason"),
-    [(28.0, 400, "too weak: the bottom is too deep"), (60.0, 300, "outside the receiver's gate")],
+    [(45.0, 500, "too weak: the bottom is too deep"), (60.0, 300, "outside the receiver's gate")],
 )
 def test_water_too_deep_is_an_error_that_says_so(
     small: Scenario, tmp_path: Path, depth: float, bins: int, reason: str
