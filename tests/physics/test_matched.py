@@ -79,7 +79,7 @@ def test_sums_of_weighted_counts_pass_their_threshold_as_often_as_stated(
     """By drawing: half to one and a fifth of the stated share, as sums of few counts are steps."""
     weights = np.exp(-0.5 * (np.arange(-9, 10) / 3.0) ** 2)
     table = TailTable.build(weights=weights, false_alarm=1e-3, gain_variance=gain_variance)
-    chance, number = np.random.default_rng(1), 150_000
+    chance, number = np.random.default_rng(1), 60_000
     total = np.zeros(number)
     for weight in weights:
         mean = chance.gamma(rate / gain_variance, gain_variance, number) if gain_variance else rate
@@ -176,6 +176,17 @@ def test_a_pixel_without_an_echo_of_its_own_is_not_found_with_its_neighbours() -
     echo = search_over(noise_over(light, 0.8, rate=1e-3)).echo(counts)
     assert echo.found[9:12, 19:22].sum() >= 7
     assert not echo.found[10, 20]
+
+
+def test_a_weak_tail_does_not_hide_the_strong_echo_before_it() -> None:
+    """A five-hundredth of the bottom, three and a half gates later: afterpulses, or the water."""
+    light = water(20.0, 0.1)
+    place = SURFACE + 50.5 + 1.5 * np.arange(COLUMNS) * np.ones((ROWS, 1))
+    bottom = pulse(place, 30_000.0) + pulse(place + 35.0, 60.0)
+    counts = np.random.default_rng(12).poisson(light + bottom)
+    echo = search_over(noise_over(light, 0.1)).echo(counts)
+    assert echo.found.all()
+    assert np.abs((echo.time - START) / NS - place).max() < 0.5
 
 
 def test_land_and_nothing_at_all_have_no_bottom() -> None:

@@ -117,8 +117,9 @@ def last_peaks(
 
     A bin fires where ``excess`` reaches ``threshold`` and ``own`` reaches ``least``; a run of bins
     that fire ends where ``excess`` falls under half its threshold. The highest bin of the last run
-    is the peak, unless it is weaker than ``tail_share`` of one up to ``tail_bins`` before it: then
-    that one is. A peak on the first bin searched, or on a flank of something before it, is none.
+    is the peak, unless it is weaker than ``tail_share`` of some up to ``tail_bins`` before it: then
+    the highest of those is. A peak on the first bin searched, or on a flank of something before
+    it, is none.
     """
     rows, columns, bins = excess.shape
     for row in range(rows):
@@ -139,8 +140,9 @@ def last_peaks(
                 if strong and own[row, column, bin_] >= least[row, column, place]:
                     best, height = bin_, above
             if best != NONE:
+                least_before = height / tail_share
                 for bin_ in range(best - 1, max(start, best - tail_bins) - 1, -1):
-                    if height < tail_share * excess[row, column, bin_]:
+                    if excess[row, column, bin_] > max(height, least_before):
                         best, height = bin_, excess[row, column, bin_]
             crest = best > start and excess[row, column, best] >= excess[row, column, best - 1]
             peak[row, column] = best if crest else NONE
