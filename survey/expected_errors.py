@@ -146,7 +146,7 @@ class LevelBottoms:
         )
         best = sums.argmax(axis=-1)[..., None]
         here, there = (np.take_along_axis(each, best, -1)[..., 0] for each in (sums, more))
-        return np.asarray(there / here)
+        return np.divide(there, here, out=np.ones_like(there), where=here > 0.0)
 
 
 def _growing(bed: Seabed, axis: FloatArray, reach: float) -> Seabed:
