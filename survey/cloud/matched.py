@@ -51,7 +51,6 @@ SHAPE_DOUBT = 0.01  # of the column in a gate, whatever the scale
 RARE = 3.0  # times the mean error around: what is more is a rare path's
 MONTE_CARLO_TAIL = 1.3  # few rare paths make more large errors than Gauss
 OWN_DEVIATIONS = 1.0
-NEAR_NEIGHBOURS = 0.5  # standard deviations of the pulse
 TAIL_SHARE, TAIL_GATES = 0.02, 10.0
 
 
@@ -174,14 +173,14 @@ class MatchedSearch:
             unseen = peak == NONE
             together = self._pooled(clipped, 1, pool.reach, unseen)
             weak = self._last_peaks(together, pool.threshold, excess, self._own_least, unseen)
-            peak = np.where(unseen, self._own_peak(excess, weak, alone.variance), peak)
+            peak = np.where(unseen, weak, peak)
         return likeliest_echo(counts=counts, peak=peak, noise=self.noise)
 
     def probability(self, bottom: FloatArray) -> FloatArray:
         """Probability (rows, columns) that the true echo is found, alone or with its neighbours.
 
         The greatest of the judgements', each where its pool's echo is strongest; sums of counts
-        are taken as normal, which tells it to a tenth where they are few. ``bottom`` are the
+        are taken as normal, which is off by up to 0.2 where they are few. ``bottom`` are the
         expected photo-electrons of the bottom (rows, columns, bins): truth.
         """
         noise = self.noise
@@ -282,22 +281,6 @@ class MatchedSearch:
             TAIL_SHARE, int(TAIL_GATES * self.noise.gate_bins), peak,
         )  # fmt: skip
         return peak
-
-    def _own_peak(self, excess: Singles, near: Whole, variance: Singles) -> Whole:
-        """Return the likeliest bin of the pixel's own echo, its neighbours' as a prior.
-
-        Half the squared ratio to chance is the logarithm of the likelihood of an echo of unknown
-        strength; the pixel's own time lies within about half a pulse width of the neighbours'.
-        """
-        half = self.noise.gate_bins // 2
-        lag = np.arange(-half, half + 1)
-        place = np.clip(np.maximum(near, 0)[..., None] + lag, 0, excess.shape[-1] - 1)
-        own = np.maximum(np.take_along_axis(excess, place, -1), np.float32(0.0))
-        chance = np.take_along_axis(variance, place // self.step, -1)
-        spread = NEAR_NEIGHBOURS * self.noise.pulse_sigma / self.noise.bin_width
-        likely = 0.5 * own**2 / chance - 0.5 * (lag / spread) ** 2
-        best = np.take_along_axis(place, likely.argmax(axis=-1)[..., None], -1)[..., 0]
-        return np.where(near == NONE, NONE, best)
 
 
 def filter_taps(sigma: float) -> Singles:

@@ -104,7 +104,9 @@ def test_bottomless_water_has_no_more_bottoms_than_stated(
     assert least * 0.05 * pixels <= false <= binom.isf(1e-4, pixels, 0.05)
 
 
-@pytest.mark.parametrize("name", ["apd", "pmt", "spad, afterpulses"])
+@pytest.mark.parametrize(
+    "name", ["apd", "pmt", pytest.param("spad, afterpulses", marks=pytest.mark.slow)]
+)
 def test_false_bottoms_behind_other_detectors_are_no_more_than_stated(name: str) -> None:
     light, chance = np.ascontiguousarray(water(20.0, 0.05)[:, :, :]), np.random.default_rng(3)
     detector = DETECTORS[name]
