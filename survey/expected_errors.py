@@ -150,7 +150,8 @@ class LevelBottoms:
         )
         best = sums.argmax(axis=-1)[..., None]
         here, there = (np.take_along_axis(each, best, -1)[..., 0] for each in (sums, more))
-        return np.divide(there, here, out=np.full(here.shape, np.nan), where=here > 0.0)
+        none = np.full(here.shape, np.nan)
+        return np.asarray(np.divide(there, here, out=none, where=here > 0.0))
 
 
 def _growing(bed: Seabed, axis: FloatArray, reach: float) -> Seabed:
