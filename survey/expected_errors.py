@@ -28,7 +28,7 @@ SHALLOWEST, DEPTHS, DEEPENING = 2.0, 6, 1.7
 REFLECTANCE = 0.15  # assumed: sand
 CELL = 1.0  # [m]
 BEYOND = 25.0  # how far the bottom goes on beyond the view [m]
-ENOUGH = 0.5  # share of pixels with an echo
+ENOUGH, FEWEST = 0.5, 32  # share and number of pixels with an echo
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,7 +64,7 @@ class LevelBottoms:
     map_frame: MapFrame
 
     def expected_errors(self) -> Scattering:
-        """Return the table; it ends where half of the pixels have no echo."""
+        """Return the table; it ends where half of the pixels, or all but 31, have no echo."""
         return Scattering.fitted(list(self._bottoms()))
 
     def _bottoms(self) -> Iterator[LevelBottom]:
@@ -87,7 +87,7 @@ class LevelBottoms:
         )
         late, measured = self._measured(engine, light, path)
         found = np.isfinite(measured) & np.isfinite(late)
-        if found.mean() < ENOUGH:
+        if found.mean() < ENOUGH or found.sum() < FEWEST:
             return None
         forward, right, _ = pose.body_to_map().T
         axis = (forward if self.camera.long_side == "along" else right)[:2]
@@ -96,6 +96,8 @@ class LevelBottoms:
         )
         origin = self._half_length * (self._gain(brighter, light) - 1.0)
         found &= np.isfinite(origin)
+        if found.sum() < FEWEST:
+            return None
         tangents = rays[..., :2] / -rays[..., 2:]
         centre = path.entry + path.direction * (depth / -path.direction[..., 2])[..., None]
         return LevelBottom(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,3 +39,16 @@ class Echo:
     def found(self) -> BoolArray:
         """Tell which pixels have the echo."""
         return np.isfinite(self.time)
+
+    def only(self, which: BoolArray) -> Echo:
+        """Return the echoes of some pixels, none in the others.
+
+        Examples
+        --------
+        >>> two = np.array([1.0, 2.0])
+        >>> echo = Echo(time=two, counts=two, snr=two, time_error=two)
+        >>> echo.only(np.array([True, False])).found.tolist()
+        [True, False]
+        """
+        columns = {field.name: getattr(self, field.name) for field in fields(self)}
+        return Echo(**{name: np.where(which, column, np.nan) for name, column in columns.items()})

@@ -161,7 +161,11 @@ class MatchedSearch:
         )
 
     def echo(self, counts: Readout) -> Echo:
-        """Return the bottom's echo in readings (rows, columns, bins)."""
+        """Return the bottom's echo in readings (rows, columns, bins).
+
+        One whose likeliest time lies before the first gate searched is the flank of the surface's,
+        or of a bottom's that is merged with it, and none.
+        """
         seen = _filtered(counts, self.taps)
         alone, *pools = self._judgements
         excess, clipped = np.empty_like(seen), np.empty_like(seen)
@@ -174,7 +178,9 @@ class MatchedSearch:
             together = self._pooled(clipped, 1, pool.reach, unseen)
             weak = self._last_peaks(together, pool.threshold, excess, self._own_least, unseen)
             peak = np.where(unseen, weak, peak)
-        return likeliest_echo(counts=counts, peak=peak, noise=self.noise)
+        echo = likeliest_echo(counts=counts, peak=peak, noise=self.noise)
+        first = self.noise.bin_start + self.begin * self.noise.bin_width
+        return echo.only(echo.time >= first)
 
     def probability(self, bottom: FloatArray) -> FloatArray:
         """Probability (rows, columns) that the true echo is found, alone or with its neighbours.

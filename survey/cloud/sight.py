@@ -42,7 +42,7 @@ def entry_points(
     >>> at = entry_points(np.array([[50.0, 0.0, -10.0]]), sensor=np.array([0.0, 0.0, 200.0]),
     ...                   level=0.0, refractive_index=1.34)
     >>> at.round(2).tolist()
-    [[48.18, 0.0, 0.0]]
+    [[48.22, 0.0, 0.0]]
     """
     height, depth = sensor[2] - level, level - places[:, 2]
     aside = places[:, :2] - sensor[:2]

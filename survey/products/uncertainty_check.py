@@ -99,8 +99,8 @@ def footprint_places(
     """Return places (n, 25, 2) evenly over the footprints about the points' true places [m].
 
     They are 5 x 5 with steps of a fifth of the side, pushed within a step by another part of it for
-    each point. Not pushed, none would lie in the corners, which are what a radius of 95 % leaves
-    out of a square.
+    each pixel and frame. Not pushed, none would lie in the corners, which are what a radius of
+    95 % leaves out of a square.
     """
     number = {frame.index: at for at, frame in enumerate(frames)}
     of_point = np.array([number[index] for index in cloud.frame.tolist()], dtype=np.intp)
@@ -109,7 +109,8 @@ def footprint_places(
     in_air = height - cloud.truth[:, 2] - cloud.depth * (1.0 - 1.0 / refractive_index)
     forward = np.column_stack([np.sin(heading), np.cos(heading)])
     right = np.column_stack([np.cos(heading), -np.sin(heading)])
-    push = np.outer(np.arange(len(cloud)), SPREAD) % 1.0
+    address = (cloud.frame * 8191.0 + cloud.row * 127.0) + cloud.column
+    push = np.outer(address, SPREAD) % 1.0
     strip = np.stack(np.divmod(np.arange(PLACES**2), PLACES), axis=-1)
     along, across = np.moveaxis((strip + push[:, None]) / PLACES - 0.5, -1, 0)[..., None]
     offsets = along * forward[:, None] + across * right[:, None]

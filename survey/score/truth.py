@@ -80,8 +80,8 @@ def class_name(number: int) -> str:
 
     Examples
     --------
-    >>> class_name(40), class_name(7)
-    ('40 bathymetric', '7')
+    >>> class_name(40), class_name(3)
+    ('40 bathymetric', '3')
     """
     known = {int(known): known.name.lower().replace("_", " ") for known in PointClass}
     return f"{number} {known[number]}" if number in known else str(number)

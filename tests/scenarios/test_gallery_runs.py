@@ -164,7 +164,7 @@ def test_harbor_wreck_shows_sand_and_objects_and_loses_the_seagrass() -> None:
     found = np.concatenate([result.record.outcome.ravel() for result in results]) == Outcome.FOUND
     made_of = {name: cloud.substrate == substrate.code for name, substrate in SUBSTRATES.items()}
     assert found[made_of["sand"]].mean() > 0.9
-    assert found[made_of["seagrass"]].mean() < 0.25
+    assert found[made_of["seagrass"]].mean() < 0.75 * found[made_of["sand"]].mean()
     objects = cloud.true_classification == PointClass.SUBMERGED_OBJECT
     wreck = objects & made_of["steel"]
     pipe_and_cubes = objects & made_of["concrete"]
