@@ -17,7 +17,10 @@ from terrain.substrate import known_substrates
 
 SUBSTRATES = known_substrates()
 FloatArray = NDArray[np.float64]
-LESS_WORK = {"transport.walks_per_pixel": 32}
+LESS_WORK: dict[str, Any] = {
+    "transport.walks_per_pixel": 32,
+    "processing.correct_scattering": False,
+}
 BOTTOM = (PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT)
 
 
@@ -156,6 +159,7 @@ def test_area_survey_s_cross_line_agrees_with_the_lines_under_it() -> None:
     assert biases[0] == pytest.approx(biases[1], abs=0.15)
 
 
+@pytest.mark.slow
 def test_harbor_wreck_shows_sand_and_objects_and_loses_the_seagrass() -> None:
     """Two frames: cubes and free span, then the wreck."""
     mission = prepare(load_scenario("harbor-wreck"))
@@ -187,6 +191,7 @@ def dense_cells(cloud: PointCloud) -> float:
     return float((counts >= 5.0 * 2.0 * 2.0).mean())
 
 
+@pytest.mark.slow
 def test_next_generation_is_dense_enough_where_the_paper_s_camera_is_not() -> None:
     """5 points/m2 in 80 % of cells; a 25th of the field and of the light, over a cube of 1 m."""
     middle = {"camera.rows": 32, "camera.columns": 48, "laser.pulse_energy_j": 0.005 / 25.0}

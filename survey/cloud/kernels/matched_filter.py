@@ -118,8 +118,8 @@ def last_peaks(
     A bin fires where ``excess`` reaches ``threshold`` and ``own`` reaches ``least``; a run of bins
     that fire ends where ``excess`` falls under half its threshold. The highest bin of the last run
     is the peak, unless it is weaker than ``tail_share`` of some up to ``tail_bins`` before it: then
-    the highest of those is. A peak on the first bin searched, or on a flank of something before
-    it, is none.
+    the highest of those is. A bin on the first bin searched, or on a flank of something before it,
+    is no peak: ``excess`` has fallen there since a step earlier, within which the scale is one.
     """
     rows, columns, bins = excess.shape
     for row in range(rows):
@@ -141,10 +141,15 @@ def last_peaks(
                     best, height = bin_, above
             if best != NONE:
                 least_before = height / tail_share
-                for bin_ in range(best - 1, max(start, best - tail_bins) - 1, -1):
-                    if excess[row, column, bin_] > max(height, least_before):
-                        best, height = bin_, excess[row, column, bin_]
-            crest = best > start and excess[row, column, best] >= excess[row, column, best - 1]
+                for bin_ in range(best - 1, max(start, best - tail_bins), -1):
+                    above = excess[row, column, bin_]
+                    if above > max(height, least_before) and (
+                        above >= excess[row, column, max(start, bin_ - step - 1)]
+                    ):
+                        best, height = bin_, above
+            crest = best > start and (
+                excess[row, column, best] >= excess[row, column, max(start, best - step - 1)]
+            )
             peak[row, column] = best if crest else NONE
 
 
