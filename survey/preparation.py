@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from math import hypot
+from threading import Lock
 
 import numpy as np
 from numpy.typing import NDArray
@@ -137,7 +138,7 @@ def prepare(scenario: Scenario) -> Mission:
             waves=_wave_statistics(surface, pixel=camera.pixel_tangent * scenario.flight.height_m),
             refractive_index=water.refractive_index,
         ),
-        scattering=cache(partial(_scattering, scenario, noise, surface)),
+        scattering=_once(partial(_scattering, scenario, noise, surface)),
         calibration=_calibration(scenario, frames[0], surface),
         products=product_settings(scenario),
         raw_step=RAW_STEPS[scenario.processing.keep_waveforms],
@@ -210,6 +211,17 @@ def _scattering(scenario: Scenario, noise: PosedNoise, sea: SeaSurface) -> Scatt
         level=sea.level,
         map_frame=components.map_frame(scenario),
     ).expected_errors()
+
+
+def _once(make: Callable[[], Scattering]) -> Callable[[], Scattering]:
+    """Return a function that makes a table when first asked; other threads wait for it."""
+    lock, made = Lock(), cache(make)
+
+    def get() -> Scattering:
+        with lock:
+            return made()
+
+    return get
 
 
 def _wave_statistics(sea: SeaSurface, *, pixel: float) -> WaveStatistics:
