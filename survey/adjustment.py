@@ -13,16 +13,16 @@ from numpy.typing import NDArray
 
 from survey.adjustment_truth import true_mounting, true_offsets
 from survey.alone import alone
-from survey.cloud.points import PointCloud
+from survey.cloud.points import BOTTOM_CLASSES, PointCloud
 from survey.cloud.sights import moved
 from survey.cloud.strip_adjustment import LARGEST_ERROR, Adjustment, AdjustmentError, adjust
 from survey.cloud.strip_unknowns import Mode
 from survey.cloud.strips import strips_of
+from survey.cloud.truth import FALSE_BOTTOM_ERROR
 from survey.errors import UserError
 from survey.flight.navigation import Mounting, Navigation
 from survey.flight.pose import Frame
 from survey.preparation import product_settings
-from survey.products.accuracy import BOTTOM_CLASSES
 from survey.products.frame_file import FrameResult
 from survey.products.json_file import write_json
 from survey.products.run_products import write_products
@@ -40,7 +40,6 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 REPORT, PICTURE = "adjustment.json", "strip_differences.png"
-FALSE_BOTTOM = 1.0  # [m]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -232,7 +231,7 @@ def _accuracy(clouds: Iterable[PointCloud]) -> Accuracy:
         error = cloud.position - cloud.truth
         up = cloud.position[:, 2] - cloud.true_elevation
         good = np.isin(cloud.classification, BOTTOM_CLASSES) & np.isfinite(error).all(axis=1)
-        good &= np.abs(up) <= FALSE_BOTTOM
+        good &= np.abs(up) <= FALSE_BOTTOM_ERROR
         sums += [good.sum(), np.sum(error[good, :2] ** 2), np.sum(up[good] ** 2)]
     horizontal, elevation = np.sqrt(sums[1:] / max(sums[0], 1.0))
     return Accuracy(points=int(sums[0]), horizontal=float(horizontal), elevation=float(elevation))

@@ -25,7 +25,7 @@ from survey.cloud.bottom_search import SEARCHES
 from survey.cloud.echo import Echo
 from survey.cloud.georeference import pixel_rays
 from survey.cloud.noise import NoiseModel, gate_sums
-from survey.cloud.truth import true_targets
+from survey.cloud.truth import FALSE_BOTTOM_ERROR, true_targets
 from survey.flight.pose import Frame
 from survey.preparation import Mission, prepare
 from survey.scenario.load import load_scenario
@@ -39,7 +39,6 @@ BEDS = {"coastal": (4.0, 2.3), "clear": (8.0, 4.0)}  # depth [m] and slope [deg]
 BOTTOMLESS_DEPTH = 400.0
 FALSE_ALARM_RATE = 1e-3
 RAISED = (1e-3, 5e-3, 1e-2, 2e-2, 4e-2, 8e-2, 0.16, 0.3)  # stated rates tried for the plain method
-NEAR = 1.0  # [m], a bottom further off is false: `survey.cloud.truth`
 DEPTH_STEP, SNR_STEP, MOST_SNR = 0.5, 0.5, 12.0
 FEWEST = 100
 DIGITS = 4
@@ -159,7 +158,7 @@ def curves(water: str, *, day: bool, frames: int, draws: int, **more: Any) -> di
             off = (
                 np.abs(echo.time - flash.time) * 0.5 * speed_of_light / bed.engine.water.group_index
             )
-            right = off <= NEAR
+            right = off <= FALSE_BOTTOM_ERROR
             parts[name].append((echo.found & right).ravel())
             parts[f"{name}_false"].append((echo.found & ~right).ravel())
     all_ = {name: np.concatenate(values) for name, values in parts.items()}

@@ -103,7 +103,7 @@ class RunFolder:
 
     def frame_path(self, index: int) -> Path:
         """Return the place of a frame's file."""
-        return self.path / "frames" / f"{index:06d}.npz"
+        return frame_path(self.path, index)
 
     def keep(self, index: int, result: FrameResult) -> None:
         """Write a frame and note it in the journal."""
@@ -129,11 +129,22 @@ def _remove_run(path: Path) -> None:
             file.unlink()
 
 
+def frame_path(folder: Path, index: int) -> Path:
+    """Return the place of a frame's file in a run folder.
+
+    Examples
+    --------
+    >>> frame_path(Path("run"), 7).as_posix()
+    'run/frames/000007.npz'
+    """
+    return folder / "frames" / f"{index:06d}.npz"
+
+
 def whole_frames(path: Path) -> tuple[dict[int, str], dict[int, str]]:
     """Return the frames whose file still is what the journal says, and why others are not."""
     whole, spoilt = {}, {}
     for index, sha256 in {n.frame: n.sha256 for n in read_notes(path / JOURNAL)}.items():
-        file = path / "frames" / f"{index:06d}.npz"
+        file = frame_path(path, index)
         if not file.exists():
             spoilt[index] = "its file is gone"
         elif digest(file) != sha256:

@@ -24,6 +24,7 @@ class PointClass(IntEnum):
     NO_BOTTOM_FOUND = 45
 
 
+BOTTOM_CLASSES = (PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT)
 NOISE_CLASSES = (PointClass.LOW_NOISE, PointClass.HIGH_NOISE)
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from survey.cloud.bottom_search import BottomSearch
 from survey.cloud.georeference import depth_of
 from survey.cloud.noise import NoiseModel, gate_sums
-from survey.cloud.points import NOISE_CLASSES, PixelRecord, PointClass, PointCloud
+from survey.cloud.points import BOTTOM_CLASSES, NOISE_CLASSES, PixelRecord, PointCloud
 from survey.cloud.ranging import GUARD_GATES
 from survey.cloud.truth import TrueTargets, outcomes
 from survey.cloud.weak_echoes import weak_causes
@@ -16,7 +16,6 @@ from survey.optics.water import WaterColumn
 from survey.transport.waveforms import Waveforms
 
 FloatArray = NDArray[np.float64]
-BOTTOM_CLASSES = (PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT)
 
 
 def pixel_record(

@@ -13,7 +13,7 @@ from survey.cloud.points import PixelRecord
 from survey.cloud.raw import RawReadings
 from survey.errors import OtherRunError, UserError
 from survey.products.frame_file import FrameResult, read_frame, read_raw
-from survey.run_folder import whole_frames
+from survey.run_folder import frame_path, whole_frames
 from survey.run_identity import SCENARIO, found_manifest
 from survey.scenario.load import load_scenario
 from survey.scenario.scenario import Scenario
@@ -89,7 +89,7 @@ class FlownRun:
         OtherRunError
             When they differ in any number.
         """
-        path = self.folder / "frames" / f"{index:06d}.npz"
+        path = frame_path(self.folder, index)
         other = list(_differences(read_frame(path), again))
         other += _raw_differences(read_raw(path), again.raw)
         if other:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import NOISE_CLASSES, PointClass, PointCloud
+from survey.cloud.points import BOTTOM_CLASSES, NOISE_CLASSES, PointClass, PointCloud
 from survey.cloud.truth import FALSE_BOTTOM_ERROR
 from survey.optics.water import WaterColumn
 from survey.products.cells import CellGrid, inside_ring
@@ -18,7 +18,6 @@ from survey.products.tally import DepthBins, ErrorTally
 
 FloatArray = NDArray[np.float64]
 ElevationAt = Callable[[FloatArray, FloatArray], FloatArray]
-BOTTOM_CLASSES = (PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT)
 DECIMALS = 6
 CELLS_AT_ONCE = 1 << 20
 

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import Outcome, PixelRecord, PointCloud
-from survey.products.accuracy import BOTTOM_CLASSES
+from survey.cloud.points import BOTTOM_CLASSES, Outcome, PixelRecord, PointCloud
 from survey.products.pixels import share
 from terrain.substrate import UNLABELLED
 

@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import PointClass, PointCloud
+from survey.cloud.points import BOTTOM_CLASSES, PointCloud
 from survey.cloud.truth import FALSE_BOTTOM_ERROR
 from survey.flight.pose import Frame
 
 FloatArray = NDArray[np.float64]
 
-BOTTOM = (PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT)
 DEPTH_BIN = 2.0
 MILLIMETRES = 20_001
 PLACES = 5
@@ -49,7 +48,7 @@ class UncertaintyTally:
     def add(self, bottom: PointCloud) -> None:
         """Take points into account."""
         error = bottom.position[:, 2] - bottom.true_elevation
-        right = np.isin(bottom.classification, BOTTOM)
+        right = np.isin(bottom.classification, BOTTOM_CLASSES)
         right &= (np.abs(error) <= FALSE_BOTTOM_ERROR) & np.isfinite(bottom.truth).all(axis=1)
         cloud = bottom.select(right)
         places = footprint_places(

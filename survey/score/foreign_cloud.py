@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pyproj import CRS
 from pyproj.exceptions import CRSError
 
-from survey.cloud.points import PointClass
+from survey.cloud.points import BOTTOM_CLASSES, PointClass
 from survey.score.faults import ScoreError
 from terrain.file_faults import require_crs
 from terrain.foreign.limits import limits_for_whole
@@ -21,7 +21,7 @@ from terrain.map_frame import MapFrame
 FloatArray = NDArray[np.float64]
 READERS = {".las": "read_las", ".laz": "read_las", ".ply": "read_ply", ".csv": "read_csv"}
 READERS |= {".txt": "read_csv", ".xyz": "read_csv"}
-BOTTOM = (int(PointClass.BATHYMETRIC), int(PointClass.SUBMERGED_OBJECT))
+BOTTOM = tuple(map(int, BOTTOM_CLASSES))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,7 +12,7 @@ import numpy as np
 
 from survey.cloud.points import PixelRecord
 from survey.products.frame_file import read_frame
-from survey.run_folder import whole_frames
+from survey.run_folder import frame_path, whole_frames
 from survey.run_identity import MANIFEST, SCENARIO
 from survey.scenario import components
 from survey.scenario.load import load_scenario
@@ -95,7 +95,7 @@ class ScoredRun:
     def records(self) -> Iterator[PixelRecord]:
         """Yield the records of the frames, one at a time."""
         for index in self.frames:
-            yield read_frame(self.folder / "frames" / f"{index:06d}.npz").record
+            yield read_frame(frame_path(self.folder, index)).record
 
     def seabed(self) -> Seabed:
         """Build the seabed anew and see that it is the one that was flown over.

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from survey.cloud.points import Outcome
-from survey.products.accuracy import BOTTOM_CLASSES
+from survey.cloud.points import BOTTOM_CLASSES, Outcome
 from survey.products.frame_file import FrameResult
 from survey.products.substrates import SubstrateTally
 

@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import Outcome, PointCloud
+from survey.cloud.points import BOTTOM_CLASSES, Outcome, PointCloud
 from survey.cloud.truth import FALSE_BOTTOM_ERROR
-from survey.products.accuracy import BOTTOM_CLASSES
 from survey.products.cells import CellGrid
 from survey.products.coverage import SHADOW, cell_polygons, hole_cause, map_feature
 from survey.products.json_file import json_bytes

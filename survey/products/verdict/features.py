@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import PointCloud
-from survey.products.accuracy import BOTTOM_CLASSES, ElevationAt
+from survey.cloud.points import BOTTOM_CLASSES, PointCloud
+from survey.products.accuracy import ElevationAt
 
 FloatArray = NDArray[np.float64]
 

@@ -8,9 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import PointCloud
+from survey.cloud.points import BOTTOM_CLASSES, PointCloud
 from survey.cloud.truth import FALSE_BOTTOM_ERROR
-from survey.products.accuracy import BOTTOM_CLASSES
 from survey.products.standards import Order
 
 FloatArray = NDArray[np.float64]
