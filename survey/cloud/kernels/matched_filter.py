@@ -112,7 +112,7 @@ def excesses(
 @leaf_kernel
 def _is_valley(above: np.float32, height: np.float32) -> bool:
     """Tell whether a sum of counts lies far under an earlier one, of that ``height``."""
-    return height - above > max(0.5 * height, VALLEY_DEVIATIONS * np.sqrt(height))
+    return bool(height - above > max(0.5 * height, VALLEY_DEVIATIONS * np.sqrt(height)))
 
 
 @kernel
