@@ -251,6 +251,19 @@ def view(
         raise UserError(str(fault)) from fault
 
 
+@app.command()
+def report(
+    first: Annotated[Path, typer.Argument(metavar="RUN", help="A finished run.")],
+    second: Annotated[Path, typer.Argument(metavar="RUN_B", help="Another to compare it with.")],
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="FILE", help="Page, HTML.")],
+) -> None:
+    """Compare two finished runs on a page; each run has a report.html of its own."""
+    from survey.report_comparison import write_comparison
+
+    write_comparison(first, second, output)
+    typer.echo(f"written to {output}")
+
+
 app.command()(waveforms_console.waveforms)
 app.command()(export_console.export)
 

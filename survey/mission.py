@@ -22,10 +22,12 @@ from survey.preparation import Mission, prepare
 from survey.products.frame_file import FrameResult
 from survey.products.observation import Observation
 from survey.products.performance import Stopwatch, write_performance
+from survey.products.report.sample import typical_pixel
 from survey.products.run_products import write_products
 from survey.products.verdict.words import verdict_lines
 from survey.progress import Unwatched, Watcher
 from survey.run_folder import RunFolder
+from survey.run_identity import found_manifest
 from survey.run_lock import require_free, sole_pilot
 from survey.run_log import logged
 from survey.scenario.scenario import Scenario
@@ -200,12 +202,15 @@ def _write_products(mission: Mission, run: RunFolder, watch: Watcher) -> dict[st
     present = [frame for frame in mission.frames if frame.index in run.whole]
     if not present:
         raise UserError(f"{run.path}: no frame was flown. Choose frames with --frames A:B")
+    pixel = typical_pixel(run.frame, present)
     return write_products(
         run.path,
         read=run.frame,
         frames=present,
         seabed=mission.seabed,
         settings=mission.products,
+        sample=pixel.figure(observe(mission, pixel.frame)) if pixel else None,
+        manifest=found_manifest(run.path),
         watch=watch,
     )
 

@@ -12,6 +12,7 @@ from survey.errors import OtherRunError, UserError
 from survey.journal import Note, read_notes, write_note
 from survey.products.frame_file import FrameResult, read_frame, write_frame
 from survey.products.json_file import write_json
+from survey.products.report.report import FIGURES
 from survey.products.writing import is_partial, write_whole
 from survey.run_identity import (
     MANIFEST,
@@ -123,7 +124,8 @@ def _is_left_behind(file: Path) -> bool:
 
 def _remove_run(path: Path) -> None:
     """Remove what a run made; its manifest last, so that the rest is still known as a run's."""
-    shutil.rmtree(path / "frames", ignore_errors=True)
+    for made in ("frames", FIGURES):
+        shutil.rmtree(path / made, ignore_errors=True)
     for pattern in (JOURNAL, *PRODUCTS, SCENARIO, MANIFEST):
         for file in path.glob(pattern):
             file.unlink()

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from survey.cloud.points import Outcome, PixelRecord, PointClass, PointCloud
 from survey.products.cells import CellGrid
 from survey.products.coverage import SurveyedHull, looked_at
+from survey.products.depth_profile import StrengthProfile
 from survey.products.frame_file import FrameResult
 from survey.products.grids import solid_places
 from survey.products.pixels import PixelTally
@@ -32,6 +33,7 @@ class FirstLook:
 
     def __init__(self, map_frame: MapFrame) -> None:
         self.pixels, self.substrates, self.hull = PixelTally(), SubstrateTally(), SurveyedHull()
+        self.strengths = StrengthProfile()
         self.surface_points = self.ground_points = 0
         self._map_frame = map_frame
         self._extents: list[FloatArray] = []
@@ -43,6 +45,7 @@ class FirstLook:
         record = PixelRecord.concatenate([result.record for result in results])
         bottom = PointCloud.concatenate([result.bottom for result in results])
         self.pixels.add(record, frames=len(results))
+        self.strengths.add(record)
         self.substrates.add_pixels(record, bottom.substrate)
         self.hull.add(looked_at(record)[0])
         self.surface_points += sum(len(result.surface) for result in results)

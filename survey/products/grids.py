@@ -100,6 +100,17 @@ def solid_tvu(cloud: PointCloud) -> FloatArray:
     return cloud.tvu[np.isin(cloud.classification, SOLID_CLASSES)].astype(np.float64)
 
 
+def error_places(
+    cloud: PointCloud, map_frame: MapFrame, cells: CellGrid
+) -> tuple[FloatArray, CellGrid, FloatArray]:
+    """Return what `gridded` needs for a map of errors, which stand in the place of elevations."""
+    solid = cloud.select(np.isin(cloud.classification, SOLID_CLASSES))
+    solid = solid.select(np.isfinite(solid.true_elevation))
+    places = map_frame.to_map(solid.position)
+    places[:, 2] = solid.position[:, 2] - solid.true_elevation
+    return places, cells, solid.tvu.astype(np.float64)
+
+
 def gridded(on_map: FloatArray, cells: CellGrid, tvu: FloatArray) -> ElevationGrid:
     """Return places (n, 3), all inside, with their uncertainties (n,) by cells [m, map]."""
     index = cells.index_of(on_map)

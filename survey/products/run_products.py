@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from datetime import datetime
@@ -20,9 +20,10 @@ from survey.flight.pose import Frame
 from survey.optics.water import WaterColumn
 from survey.products.accuracy import Accuracy
 from survey.products.coverage import CoverageTally, write_coverage_geojson
+from survey.products.depth_profile import DepthProfile
 from survey.products.first_look import FirstLook
 from survey.products.frame_file import FrameResult
-from survey.products.grids import Overview, gridded, solid_places, solid_tvu
+from survey.products.grids import Overview, error_places, gridded, solid_places, solid_tvu
 from survey.products.json_file import write_json
 from survey.products.las_file import laz_file
 from survey.products.lines_file import write_lines_geojson
@@ -30,7 +31,8 @@ from survey.products.map_tiles import map_tiles
 from survey.products.mesh_files import has_triangles, write_bathymetry_glb
 from survey.products.ply_file import ply_file
 from survey.products.read_ahead import read_ahead
-from survey.products.report import write_report
+from survey.products.report.page import Figure
+from survey.products.report.report import Findings, write_report
 from survey.products.shadows import with_shadows
 from survey.products.strip_differences import (
     DIFFERENCES,
@@ -44,7 +46,7 @@ from survey.products.trajectory_file import write_trajectory_csv
 from survey.products.uncertainty_check import UncertaintyTally
 from survey.products.verdict.features import Cube
 from survey.products.verdict.mission import VerdictTally
-from survey.products.verdict.report import verdict_section
+from survey.products.verdict.report import failure_figure, verdict_section
 from survey.progress import Unwatched, Watcher
 from survey.sensor.camera import Camera
 from terrain.map_frame import MapFrame
@@ -119,6 +121,8 @@ def write_products(
     frames: Sequence[Frame],
     seabed: Seabed,
     settings: ProductSettings,
+    sample: Figure | None = None,
+    manifest: Mapping[str, Any] | None = None,
     watch: Watcher | None = None,
 ) -> dict[str, Any]:
     """Stitch the frames, write every product into the run folder, and return the metrics.
@@ -142,6 +146,10 @@ def write_products(
     seabed : Seabed
         The true one.
     settings : ProductSettings
+    sample : Figure, optional
+        The waveform of one pixel, for the report.
+    manifest : mapping, optional
+        What made the run, for the report.
     watch : Watcher, optional
         Is told of the progress.
 
@@ -155,7 +163,8 @@ def write_products(
     look.require_bottom()
     area = look.hull.ring() if settings.survey_area is None else settings.survey_area
     raster = look.raster(cell_size=settings.grid)
-    overview, substrates, overlaps = Overview(raster), look.substrates, OverlapTally()
+    overview, error_overview, depths = Overview(raster), Overview(raster), DepthProfile()
+    substrates, overlaps = look.substrates, OverlapTally()
     coverage = CoverageTally(
         survey_area=area + map_frame.origin[:2], cell_size=settings.grid, reach=settings.reach
     )
@@ -190,6 +199,8 @@ def write_products(
             add_lines(part.tile.cells, part.lines)
             overlaps.add(part.lines)
             overview.add(grid)
+            error_overview.add(gridded(*error_places(part.bottom, map_frame, part.tile.cells)))
+            depths.add(part.bottom)
             coverage.add(part.looked_at, part.outcomes, part.tile.cells)
             accuracy.add(part.bottom, part.surface)
             uncertainty.add(part.bottom)
@@ -201,6 +212,8 @@ def write_products(
     found["strip_adjustment"] = settings.strip_adjustment
     found["overlaps"] = overlap_metrics(overlaps.overlaps())
     found |= uncertainty.metrics()
+    found["error_by_depth"] = depths.metrics()
+    found["detection_by_counts"] = look.strengths.metrics()
     found["substrates"] = substrates.metrics(seabed.substrate_names)
     covered = with_shadows(
         coverage.map(),
@@ -222,15 +235,21 @@ def write_products(
         )
     write_coverage_geojson(folder / "coverage.geojson", covered, map_frame)
     write_report(
-        folder / "report.html",
-        title=settings.title,
-        description=settings.description,
-        metrics=found,
-        grid=seen,
-        coverage=covered,
-        errors=accuracy.bottom.errors,
-        water_level=settings.water_level,
-        verdict=verdict_section(judged),
+        folder,
+        Findings(
+            title=settings.title,
+            description=settings.description,
+            metrics=found,
+            grid=seen,
+            error_grid=error_overview.map(),
+            coverage=covered,
+            errors=accuracy.bottom.errors,
+            water_level=settings.water_level,
+            verdict=tuple(verdict_section(judged)),
+            failures=failure_figure(judged),
+            sample=sample,
+            manifest=manifest,
+        ),
     )
     return found
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from survey.cloud.overlaps import SOLID, LineCells, Overlap, OverlapTally, line_cells
 from survey.cloud.points import PointCloud
 from survey.products.cells import CellGrid
-from survey.products.report import _overlaps
+from survey.products.report.tables import overlaps
 from survey.products.strip_differences import overlap_metrics, strip_differences_tif
 from survey.products.strip_picture import write_strip_picture
 from terrain.map_frame import MapFrame
@@ -126,9 +126,9 @@ def test_one_line_has_no_overlap(bottom: PointCloud) -> None:
 
 def test_the_report_says_whether_strips_are_adjusted(cells: LineCells) -> None:
     figures = overlap_metrics(found_in(cells))
-    assert _overlaps([], "none") == []
-    assert "strips not adjusted" in "".join(_overlaps(figures, "none"))
-    page = "".join(_overlaps(figures, "boresight"))
+    assert overlaps([], "none") == []
+    assert "strips not adjusted" in "".join(overlaps(figures, "none"))
+    page = "".join(overlaps(figures, "boresight"))
     assert "adjusted: boresight" in page
     assert page.count("<tr>") == len(figures) + 1
 

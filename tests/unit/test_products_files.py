@@ -15,11 +15,12 @@ from survey.flight.pose import Pose
 from survey.optics.water import WaterColumn, petzold_water
 from survey.products.accuracy import Accuracy
 from survey.products.coverage import CoverageTally, hull_of, looked_at
+from survey.products.depth_profile import DepthProfile
 from survey.products.gps_time import adjusted_gps_time
-from survey.products.grids import grid_elevation
+from survey.products.grids import error_places, grid_elevation, gridded
 from survey.products.json_file import write_json
 from survey.products.pixels import tallied
-from survey.products.report import write_report
+from survey.products.report.report import Findings, write_report
 from survey.products.trajectory_file import read_trajectory_csv, write_trajectory_csv
 from survey.products.writing import ProductError, whole_file
 
@@ -106,6 +107,9 @@ def test_trajectory_needs_one_measured_pose_a_frame(small_survey: Any, tmp_path:
         )
 
 
+FIGURES = ["depth", "depth-histogram", "error-by-depth", "error-histogram", "errors", "holes"]
+
+
 class Links(HTMLParser):
     """Collects what a page would load or link to, and its text."""
 
@@ -121,8 +125,9 @@ class Links(HTMLParser):
         self.words += data
 
 
-def write_report_of(survey: Any, path: Path) -> str:
+def write_report_of(survey: Any, folder: Path) -> str:
     """Write the report of a survey and return the page."""
+    folder.mkdir()
     hull, origin = hull_of(survey.records), survey.map_frame.origin[:2]
     accuracy = Accuracy(water_level=survey.water_level, survey_area=hull, cell_size=8.0)
     accuracy.add(survey.bottom, survey.surface)
@@ -131,29 +136,37 @@ def write_report_of(survey: Any, path: Path) -> str:
     places, outcomes = (np.concatenate(columns) for columns in zip(*looked, strict=True))
     coverage.add(places + origin, outcomes)
     water = petzold_water("coastal", refractive_index=1.34, group_index=1.36)
-    write_report(
-        path,
-        title="Bar <b>",
-        description="Flown & stitched.",
-        metrics=accuracy.metrics(
-            pixels=tallied(survey.records),
-            elevation_at=survey.elevation_at,
-            water=WaterColumn.uniform(water),
-        ),
-        grid=grid_elevation(survey.bottom, survey.map_frame, cell_size=8.0),
-        coverage=coverage.map(),
-        errors=accuracy.bottom.errors,
-        water_level=survey.water_level,
+    depths, grid = DepthProfile(), grid_elevation(survey.bottom, survey.map_frame, cell_size=8.0)
+    depths.add(survey.bottom)
+    metrics = accuracy.metrics(
+        pixels=tallied(survey.records),
+        elevation_at=survey.elevation_at,
+        water=WaterColumn.uniform(water),
     )
-    return path.read_text(encoding="utf-8")
+    write_report(
+        folder,
+        Findings(
+            title="Bar <b>",
+            description="Flown & stitched.",
+            metrics=metrics | {"error_by_depth": depths.metrics()},
+            grid=grid,
+            error_grid=gridded(*error_places(survey.bottom, survey.map_frame, grid.cells)),
+            coverage=coverage.map(),
+            errors=accuracy.bottom.errors,
+            water_level=survey.water_level,
+        ),
+    )
+    return (folder / "report.html").read_text(encoding="utf-8")
 
 
 def test_report_is_self_contained_and_repeatable(small_survey: Any, tmp_path: Path) -> None:
-    page = write_report_of(small_survey, tmp_path / "a.html")
-    assert page == write_report_of(small_survey, tmp_path / "b.html")
+    page = write_report_of(small_survey, tmp_path / "a")
+    assert page == write_report_of(small_survey, tmp_path / "b")
     parsed = Links()
     parsed.feed(page)
-    assert len(parsed.targets) == 3
+    figures = sorted(file.stem for file in (tmp_path / "a" / "figures").iterdir())
+    assert figures == FIGURES
+    assert len(parsed.targets) == len(figures)
     assert all(target.startswith("data:image/png;base64,") for target in parsed.targets)
     assert "Bar <b>" in parsed.words
     assert "Flown & stitched." in parsed.words

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from survey.products.report_figures import STATE_LOOKS, map_axes, png
+from survey.products.report.maps import STATE_LOOKS, map_axes, png
 from survey.products.verdict.failures import (
     DEPTH_ERROR,
     FALSE_BOTTOM,

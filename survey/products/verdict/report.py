@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from base64 import b64encode
 from collections.abc import Iterator, Mapping
 from html import escape
 from typing import Any
 
+from survey.products.report.page import Figure
 from survey.products.verdict.failure_picture import failure_picture
 from survey.products.verdict.mission import Judged
 from survey.products.verdict.words import CRITERIA, verdict_sentence
@@ -20,7 +20,6 @@ def verdict_section(judged: Judged) -> list[str]:
     spoken_of = s44["orders"][s44["judged"]]
     asked = "asked for" if s44["asked"] else "the strictest order that passes, or the least strict"
     others = [found for key, found in s44["orders"].items() if key != s44["judged"]]
-    picture = b64encode(failure_picture(judged.failures)).decode()
     return [
         "<h2>Verdict</h2>",
         f"<p>By {escape(s44['standard'])} ({asked}): <b>{verdict_sentence(spoken_of)}.</b> "
@@ -29,10 +28,17 @@ def verdict_section(judged: Judged) -> list[str]:
         *(f"<p>{_other(found)}</p>" for found in others),
         f"<p>By {escape(norway['standard'])}:</p>",
         *_table(norway["criteria"], RULES),
-        f"<p>Where {escape(judged.failures.title)} is not met, and why "
-        "(failures.geojson has the same areas):</p>",
-        f'<img alt="map of failures" src="data:image/png;base64,{picture}">',
     ]
+
+
+def failure_figure(judged: Judged) -> Figure:
+    """Return the map of where the order is not met."""
+    return Figure(
+        name="failures",
+        png=failure_picture(judged.failures),
+        words=f"Where {judged.failures.title} is not met, and why; failures.geojson has the same "
+        "areas.",
+    )
 
 
 def _table(criteria: Mapping[str, Any], names: Mapping[str, str]) -> Iterator[str]:

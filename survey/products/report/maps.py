@@ -1,4 +1,4 @@
-"""Pictures of the report: depth, outcome and errors, as PNG bytes."""
+"""Maps of the report: depth, errors and outcomes, and their histogram, as PNG bytes."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 DOTS_PER_INCH = 110
+WIDTH = 9.0
 HISTOGRAM_BINS = 50
 MOST_PICTURE_CELLS = 2000  # along a side
 STATE_LOOKS = {
@@ -63,6 +64,32 @@ def depth_map(grid: ElevationMap, *, water_level: float) -> bytes:
     return png(figure)
 
 
+def error_map(errors: ElevationMap) -> bytes:
+    """Return a map of errors: red where too high, blue where too low, as far as 95 % of them go."""
+    return _signed_map(errors, "measured less true elevation [m]")
+
+
+def difference_map(off: ElevationMap) -> bytes:
+    """Return a map of the elevations of one survey less those of another, in the same colours."""
+    return _signed_map(off, "difference of elevation [m]")
+
+
+def _signed_map(values: ElevationMap, label: str) -> bytes:
+    figure, axes = map_axes(values.cells)
+    known = np.abs(values.elevation[np.isfinite(values.elevation)])
+    limit = max(float(np.ceil(100.0 * np.quantile(known, 0.95)) / 100.0), 0.01)
+    image = axes.imshow(
+        values.elevation,
+        cmap="RdBu_r",
+        vmin=-limit,
+        vmax=limit,
+        extent=values.cells.extent,
+        interpolation="nearest",
+    )
+    figure.colorbar(image, ax=axes, label=label, extend="both")
+    return png(figure)
+
+
 def outcome_map(coverage: CoverageMap) -> bytes:
     """Return a map of what became of the bottom, each outcome that occurs with its share."""
     from matplotlib.colors import ListedColormap
@@ -89,7 +116,7 @@ def outcome_map(coverage: CoverageMap) -> bytes:
 
 def error_histogram(errors: ErrorTally) -> bytes:
     """Return a histogram of elevation errors [m]; the end bins hold all that is beyond."""
-    figure, axes = _figure(height=3.2)
+    figure, axes = new_figure(height=3.2)
     limit = np.ceil(20.0 * errors.quantile_of_absolute(0.95) + 1e-9) / 10.0
     edges = np.linspace(-limit, limit, HISTOGRAM_BINS + 1)
     axes.stairs(errors.histogram(edges), edges, fill=True, color="#0072b2")
@@ -104,7 +131,9 @@ def error_histogram(errors: ErrorTally) -> bytes:
 def map_axes(cells: CellGrid) -> tuple[Figure, Axes]:
     """Return an empty map of the cells."""
     west, east, south, north = cells.extent
-    figure, axes = _figure(height=float(np.clip(7.0 * (north - south) / (east - west), 2.6, 7.5)))
+    figure, axes = new_figure(
+        height=float(np.clip(7.0 * (north - south) / (east - west), 2.6, 7.5))
+    )
     axes.set_xlabel("easting [m]")
     axes.set_ylabel("northing [m]")
     axes.set_aspect("equal")
@@ -114,10 +143,11 @@ def map_axes(cells: CellGrid) -> tuple[Figure, Axes]:
     return figure, axes
 
 
-def _figure(*, height: float) -> tuple[Figure, Axes]:
+def new_figure(*, height: float, width: float = WIDTH) -> tuple[Figure, Axes]:
+    """Return an empty figure, its sides in inches."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(9.0, height), dpi=DOTS_PER_INCH, layout="constrained")
+    figure = Figure(figsize=(width, height), dpi=DOTS_PER_INCH, layout="constrained")
     return figure, figure.add_subplot()
 
 
