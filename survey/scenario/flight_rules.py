@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.scenario import flight_sections as kinds
-from survey.scenario.faults import Fault
+from survey.scenario.faults import Fault, missing_file
 from survey.scenario.flight_parts import (
     FORMAT_OF_SUFFIX,
     area_corners,
@@ -34,8 +34,8 @@ def files_can_be_flown(flight: Flight, mission: Mission, folder: Path) -> Iterat
     file = getattr(flight, "file", None)
     if isinstance(flight, kinds.AreaFlight) and (file is None) == (flight.corners_m is None):
         yield Fault("flight.corners_m", "give an area its corners_m or a file, one of them.")
-    elif file is not None and not (folder / file).is_file():
-        yield Fault("flight.file", f"no file '{file}' in {folder}.", missing_file=True)
+    elif file is not None and (missing := list(missing_file("flight.file", file, folder))):
+        yield from missing
     elif isinstance(flight, kinds.AreaFlight):
         yield from _area_faults(flight, mission.crs_epsg, folder)
     elif isinstance(flight, kinds.RecordedFlight):

@@ -163,6 +163,7 @@ _BOUNDS: dict[str, Callable[[dict[str, Any]], str]] = {
 _PLAIN = {
     "missing": "missing. Give it a value.",
     "finite_number": "{given} is not a finite number. Give it a value.",
+    "beyond_reckoning": "{given} is {message}.",
     "float_type": "{given} is not a number.",
     "int_type": "{given} is not a whole number.",
     "bool_type": "{given} is not true or false.",
