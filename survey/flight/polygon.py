@@ -110,7 +110,7 @@ def area_between(corners: FloatArray, low: FloatArray, high: FloatArray) -> Floa
     size = max(1, MOST_AT_ONCE // len(corners))
     parts = [slice(first, first + size) for first in range(0, len(low), size)]
     areas = [_area_below(corners, high[part]) - _area_below(corners, low[part]) for part in parts]
-    return np.abs(np.concatenate([np.empty(0), *areas]))
+    return np.asarray(np.abs(np.concatenate([np.empty(0), *areas])))
 
 
 def _area_below(corners: FloatArray, limits: FloatArray) -> FloatArray:
