@@ -86,6 +86,7 @@ class Door:
         told = self._nursery.stdout.readline()
         if not told:
             ended = f"the process ended by {self._nursery.wait()}"
+            self._nursery.communicate()
             self._nursery = self._started()
             return Answer(
                 status=-1, out="", err=ended, wrong=[ended], processor_seconds=0.0, bytes=0

@@ -2,7 +2,8 @@
 
 ``python -m tests.bad_input.nursery``: a job a line on standard input, JSON; an answer a line on
 standard output. Readers of foreign files, for which the program starts a fresh interpreter, are
-forked from the warm one, under the same limits. A job that hangs ends the process.
+forked from the warm one, under the same limits. A job that keeps the processor for too long ends
+the process.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ READERS = (
     *("terrain.foreign.mesh_reader", "terrain.foreign.raster_reader"),
 )
 FRESH_BYTES = 300 * MEGABYTE  # that a fresh interpreter with a reader's libraries maps
-LONGEST_SECONDS = 100
+LONGEST_SECONDS = 100.0
 
 
 def main() -> None:
@@ -44,7 +45,7 @@ def main() -> None:
     gc.freeze()
     command = get_command(app)
     for line in sys.stdin:
-        signal.alarm(LONGEST_SECONDS)
+        signal.setitimer(signal.ITIMER_PROF, LONGEST_SECONDS)
         print(json.dumps(_answer(command, **json.loads(line))), flush=True)
 
 
