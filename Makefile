@@ -5,7 +5,7 @@ DEMO := runs/demo
 FLY := $(BIN)/bathyflash run scenarios/measured-seabed.toml -o $(DEMO)
 OTHER_RUN := 5
 
-.PHONY: help venv libraries demo test slow bench check format
+.PHONY: help venv libraries demo test slow slow-input bench check format
 
 help:
 	@echo "make venv    create .venv with all libraries"
@@ -13,6 +13,7 @@ help:
 	@echo "make check   format, lint, types and direction of imports"
 	@echo "make test    check, then all tests but the slow ones"
 	@echo "make slow    the slow tests"
+	@echo "make slow-input  2,000 damaged files and the corpus of broken ones, as users meet them"
 	@echo "make bench   how fast engine, kernels and products are: nothing else should run"
 	@echo "make format  bring the code into its format"
 
@@ -42,6 +43,9 @@ test: libraries check
 
 slow: libraries $(READY)
 	$(BIN)/python -m pytest -m slow
+
+slow-input: $(READY)
+	$(BIN)/python -m pytest -m slow tests/bad_input
 
 bench: $(READY)
 	$(BIN)/python tests/benchmarks/kernels.py

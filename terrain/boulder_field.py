@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from terrain.extent import MOST_BOULDERS
 from terrain.objects import boulder
 from terrain.seabed import Seabed
 
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-MOST_BOULDERS = 20_000
 SUBDIVISIONS = 2
 
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from terrain.extent import MOST_CELLS
 from terrain.height_field import triangulate
 from terrain.map_frame import MapFrame
 from terrain.roughness import Roughness
@@ -20,8 +21,6 @@ from terrain.seabed import Seabed, uniform_seabed
 
 FloatArray = NDArray[np.float64]
 Profile = Callable[[FloatArray, FloatArray], FloatArray]
-
-MOST_CELLS = 20_000_000
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pyproj import CRS
 
+from terrain.extent import HIGHEST
 from terrain.file_faults import SeabedFileError, existing, frame_near, parsed, require_crs
 from terrain.foreign.limits import limits_for_whole
 from terrain.seabed import Seabed, uniform_seabed
@@ -51,7 +52,8 @@ def from_las(
     FileNotFoundError
         When there is no such file.
     SeabedFileError
-        When it is not readable, has another CRS, or too few points of the classes.
+        When it is not readable, has another CRS, elevations that no ground has, or too few points
+        of the classes.
     """
     path = existing(path)
     points = _read(path, epsg=epsg, classes=classes, outline=outline, margin=margin)
@@ -59,6 +61,12 @@ def from_las(
         raise SeabedFileError(
             f"{path}: {len(points)} points of classes {_listed(classes)} where they are needed. "
             "choose other classes or another file"
+        )
+    beyond = np.flatnonzero(~(np.abs(points[:, 2]) <= HIGHEST))
+    if beyond.size:
+        raise SeabedFileError(
+            f"{path}: {beyond.size} points beyond {HIGHEST:g} m of elevation, such as "
+            f"{points[beyond[0], 2]:g}. leave them out or correct the scale"
         )
     middle = points[:, :2].mean(axis=0)
     frame = frame_near(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from terrain.extent import FARTHEST, HIGHEST
 from terrain.file_faults import SeabedFileError, existing, frame_near, parsed
 from terrain.foreign.limits import limits_for_whole
 from terrain.seabed import Seabed, uniform_seabed
@@ -28,8 +29,8 @@ def read_mesh(path: str | Path) -> trimesh.Trimesh:
     FileNotFoundError
         When there is no such file.
     SeabedFileError
-        When it is not readable, has no faces, a vertex that is not finite or a face that names a
-        vertex there is not; one line a fault.
+        When it is not readable, has no faces, a vertex that is not finite or too far away, or a
+        face that names a vertex there is not; one line a fault.
     """
     import trimesh
 
@@ -48,15 +49,24 @@ def read_mesh(path: str | Path) -> trimesh.Trimesh:
 
 def _faults(vertices: FloatArray, faces: NDArray[np.int64]) -> list[str]:
     """Return what is wrong, the first few of each kind."""
-    if len(faces) == 0:
-        return ["no faces could be read. look for vertices that are not numbers"]
     bad = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
     faults = [f"vertex {i}: a coordinate is not a finite number" for i in bad[:SHOWN]]
+    faults += _beyond(vertices, (FARTHEST, FARTHEST, FARTHEST))
     outside = (faces < 0) | (faces >= len(vertices))
     for face in np.flatnonzero(outside.any(axis=1))[:SHOWN]:
         index = faces[face][outside[face]][0]
         faults.append(f"face {face}: index {index}, but there are {len(vertices)} vertices")
     return faults
+
+
+def _beyond(vertices: FloatArray, limits: tuple[float, float, float]) -> list[str]:
+    """Return the first vertices (n, 3) that lie beyond limits [m] along x, y, z."""
+    beyond = np.isfinite(vertices) & (np.abs(vertices) > limits)
+    return [
+        f"vertex {i}: {'xyz'[axis]} is {vertices[i, axis]:g} m, beyond {limits[axis]:g}. "
+        "give metres, and what is on the map in offset_easting_m, _northing_m and _up_m"
+        for i, axis in np.argwhere(beyond)[:SHOWN]
+    ]
 
 
 def from_mesh_file(
@@ -75,17 +85,23 @@ def from_mesh_file(
     Raises
     ------
     FileNotFoundError, SeabedFileError
-        As read_mesh.
+        As read_mesh, and when a vertex lies where there is no ground or no face has an area.
     """
     mesh = read_mesh(path)
+    faults = _beyond(mesh.vertices + offset, (FARTHEST, FARTHEST, HIGHEST))
+    if faults:
+        raise SeabedFileError("\n".join(f"{path}: {fault}" for fault in faults))
     middle = mesh.bounds.mean(axis=0) + offset
     frame = frame_near(
         east=float(middle[0]), north=float(middle[1]), epsg=epsg, vertical_epsg=vertical_epsg
     )
     mesh.apply_translation(np.asarray(offset) - frame.origin)
-    return uniform_seabed(
-        mesh,
-        reflectance=reflectance,
-        map_frame=frame,
-        source=f"Mesh file {Path(path).name}.",
-    )
+    try:
+        return uniform_seabed(
+            mesh,
+            reflectance=reflectance,
+            map_frame=frame,
+            source=f"Mesh file {Path(path).name}.",
+        )
+    except ValueError as fault:
+        raise SeabedFileError(f"{path}: {fault}") from fault

@@ -11,13 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pyproj import CRS
 
+from terrain.extent import MOST_CELLS
 from terrain.file_faults import SeabedFileError, existing, parsed, require_crs
 from terrain.foreign.limits import limits_for_window
 
 FloatArray = NDArray[np.float64]
 Nodata = float | Literal["none"] | None
-
-MOST_CELLS = 20_000_000
 
 
 @dataclass(frozen=True, kw_only=True)

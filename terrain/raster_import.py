@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from terrain.extent import HIGHEST, MOST_CELLS
 from terrain.file_faults import SeabedFileError, frame_near
 from terrain.height_field import refine, triangulate
-from terrain.raster_cells import MOST_CELLS, Nodata, RasterCells, raster_cells
+from terrain.raster_cells import Nodata, RasterCells, raster_cells
 from terrain.roughness import Roughness
 from terrain.seabed import Seabed, uniform_seabed
 
@@ -82,6 +83,7 @@ def _lattice(
     z = np.where(cells.valid, cells.values.astype(np.float64), np.nan)
     z = z * cells.scale[0] + cells.scale[1]
     z[~np.isfinite(z)] = np.nan
+    _require_ground(z, cells, path)
     factor = 1
     if spacing is not None:
         factor = max(1, int(np.ceil(cells.side / spacing - 1e-9)))
@@ -90,3 +92,15 @@ def _lattice(
         z = refine(z, factor)
     rows, cols = np.indices(z.shape) / factor
     return z, *cells.place(rows, cols)
+
+
+def _require_ground(z: FloatArray, cells: RasterCells, path: Path) -> None:
+    """Refuse elevations that no ground has."""
+    beyond = np.argwhere(np.abs(z) > HIGHEST)
+    if len(beyond):
+        row, col = beyond[0] + cells.first
+        raise SeabedFileError(
+            f"{path}: row {row}, column {col}: elevation {z[tuple(beyond[0])]:g} m, beyond "
+            f"{HIGHEST:g}, like {len(beyond) - 1} more. If it marks cells without data, say so "
+            "with nodata"
+        )

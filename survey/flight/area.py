@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.flight.plan import LinePlan, SurveyLine, unit_axes
-from survey.flight.polygon import clipped, signed_area
+from survey.flight.polygon import area_between, clipped, signed_area
 from survey.flight.pose import FULL_TURN
 from survey.flight.profile import Profile, even_times
 
@@ -119,8 +119,7 @@ class AreaPlan(LinePlan):
             return None
         begin, end = strip[:, 0].min() + half[0], strip[:, 0].max() - half[0]
         along, times = self._flashes(axis, begin, end, offset)
-        middles = np.column_stack([along, np.full(along.shape, offset)])
-        seen = np.array([_touches(strip, middle - half, middle + half) for middle in middles])
+        seen = area_between(strip, along - half[0], along + half[0]) > TOUCHED_AREA
         along, times = along[seen], times[seen]
         if backwards:
             along, times = along[::-1], times[-1] - times[::-1]
@@ -152,8 +151,3 @@ class AreaPlan(LinePlan):
             return self.speed_profile
         ahead = float(self.speed_profile.at(np.array(-offset)))
         return Profile(distances=(0.0,), values=(ahead,))
-
-
-def _touches(field: FloatArray, low: FloatArray, high: FloatArray) -> bool:
-    """Tell whether a box holds some of a polygon."""
-    return abs(signed_area(clipped(field, low=low, high=high))) > TOUCHED_AREA

@@ -10,6 +10,7 @@ FloatArray = NDArray[np.float64]
 FEWEST_CORNERS, MOST_CORNERS = 3, 2000
 SHOWN = 5
 SMALLEST_AREA = 1.0
+MOST_AT_ONCE = 4_000_000
 
 
 def polygon_faults(corners: FloatArray) -> list[str]:
@@ -95,6 +96,32 @@ def signed_area(corners: FloatArray) -> float:
         return 0.0
     x, y = (corners - corners[0]).T
     return float(0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
+
+
+def area_between(corners: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
+    """Return the areas of a polygon (n, 2) between two limits along its first axis, each (m,) [m2].
+
+    Examples
+    --------
+    >>> square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]])
+    >>> area_between(square, np.array([-1.0, 3.0]), np.array([2.0, 9.0])).tolist()
+    [6.0, 3.0]
+    """
+    size = max(1, MOST_AT_ONCE // len(corners))
+    parts = [slice(first, first + size) for first in range(0, len(low), size)]
+    areas = [_area_below(corners, high[part]) - _area_below(corners, low[part]) for part in parts]
+    return np.asarray(np.abs(np.concatenate([np.empty(0), *areas])))
+
+
+def _area_below(corners: FloatArray, limits: FloatArray) -> FloatArray:
+    """Return the signed area of a polygon below limits (m,) along its first axis, by Green."""
+    (x, y), (next_x, next_y) = corners.T, np.roll(corners, -1, axis=0).T
+    y, next_y = y - y[0], next_y - y[0]
+    run = next_x - x
+    slope = np.divide(next_y - y, run, out=np.zeros_like(run), where=run != 0.0)
+    begin, end = (np.minimum(end, limits[:, None]) for end in (x, next_x))
+    middle = y + slope * (0.5 * (begin + end) - x)
+    return np.asarray(-np.sum(middle * (end - begin), axis=1))
 
 
 def clipped(corners: FloatArray, *, low: FloatArray, high: FloatArray) -> FloatArray:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import reprlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from difflib import get_close_matches
+from pathlib import Path
 
 from survey.errors import UserError
+
+LONGEST_NAME = 100
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,17 @@ class ScenarioError(UserError):
     def only_missing_files(self) -> bool:
         """True when all that is wrong are files that are not there."""
         return all(fault.missing_file for fault in self.faults)
+
+
+def missing_file(place: str, file: str, folder: Path) -> Iterator[Fault]:
+    """Yield the fault of a file that is not there."""
+    try:
+        is_there = (folder / file).is_file()
+    except OSError:  # a name that is too long
+        is_there = False
+    if not is_there:
+        name = file if len(file) <= LONGEST_NAME else f"{file[:LONGEST_NAME]}..."
+        yield Fault(place, f"no file {name!r} in {folder}.", missing_file=True)
 
 
 def nearest(word: str, known: Iterable[str], *, likeness: float = 0.6) -> str | None:

@@ -171,15 +171,15 @@ def sound_track(given: kinds.RecordedFlight, *, epsg: int, folder: Path) -> Trac
     return track if np.isfinite(track.position).all() else None
 
 
-def sound_area_m2(given: kinds.AreaFlight, *, epsg: int, folder: Path) -> float:
-    """Return the size of an area; 0 where there is none."""
-    from survey.flight.polygon import polygon_faults, signed_area
+def sound_corners(given: kinds.AreaFlight, *, epsg: int, folder: Path) -> FloatArray | None:
+    """Return the corners (n, 2) of an area; None where there is none."""
+    from survey.flight.polygon import polygon_faults
 
     try:
         corners = area_corners(given, epsg=epsg, folder=folder)
     except (OSError, ValueError, RuntimeError):
-        return 0.0
-    return 0.0 if polygon_faults(corners) else abs(signed_area(corners))
+        return None
+    return None if polygon_faults(corners) else corners
 
 
 def track_format(given: kinds.RecordedFlight) -> kinds.TrackFormat | None:

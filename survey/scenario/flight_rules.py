@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from itertools import pairwise
+from math import radians
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from survey.scenario import flight_sections as kinds
-from survey.scenario.faults import Fault
+from survey.scenario.faults import Fault, missing_file
 from survey.scenario.flight_parts import (
     FORMAT_OF_SUFFIX,
     area_corners,
     legs,
     read_track,
-    sound_area_m2,
+    sound_corners,
     sound_track,
     track_format,
 )
@@ -26,6 +27,7 @@ from survey.scenario.sections import Camera, Flight, Mission
 FloatArray = NDArray[np.float64]
 
 LARGEST_FRAME_COUNT = 1_000_000
+LARGEST_LINE_COUNT = 3_000
 WIDEST_SWING = 4.0  # of the r.m.s.: one flash in 16,000 goes beyond
 
 
@@ -34,8 +36,8 @@ def files_can_be_flown(flight: Flight, mission: Mission, folder: Path) -> Iterat
     file = getattr(flight, "file", None)
     if isinstance(flight, kinds.AreaFlight) and (file is None) == (flight.corners_m is None):
         yield Fault("flight.corners_m", "give an area its corners_m or a file, one of them.")
-    elif file is not None and not (folder / file).is_file():
-        yield Fault("flight.file", f"no file '{file}' in {folder}.", missing_file=True)
+    elif file is not None and (missing := list(missing_file("flight.file", file, folder))):
+        yield from missing
     elif isinstance(flight, kinds.AreaFlight):
         yield from _area_faults(flight, mission.crs_epsg, folder)
     elif isinstance(flight, kinds.RecordedFlight):
@@ -141,11 +143,40 @@ def _frame_count(flight: Flight, camera: Camera, mission: Mission, folder: Path)
         seconds = sum(end - begin for begin, end in flown)
         return int(seconds * flight.flash_rate_hz), "flight.flash_rate_hz"
     assert isinstance(flight, kinds.AreaFlight)
+    from survey.flight.polygon import signed_area
+
+    corners = sound_corners(flight, epsg=mission.crs_epsg, folder=folder)
+    if corners is None:
+        return 0, ""
+    length = abs(signed_area(corners)) / _line_spacing_m(flight, camera)
+    return int(length * flight.flash_rate_hz / flight.speed_m_s), "flight.flash_rate_hz"
+
+
+def area_takes_few_lines(
+    flight: Flight, camera: Camera, mission: Mission, folder: Path
+) -> Iterator[Fault]:
+    """An area is not so wide that a corner of it must be elsewhere."""
+    if not isinstance(flight, kinds.AreaFlight):
+        return
+    from survey.flight.plan import unit_axes
+
+    corners = sound_corners(flight, epsg=mission.crs_epsg, folder=folder)
+    if corners is None:
+        return
+    width = float(np.ptp(corners @ unit_axes(radians(flight.heading_deg))[1]))
+    spacing = _line_spacing_m(flight, camera)
+    if width > LARGEST_LINE_COUNT * spacing:
+        yield Fault(
+            "flight.heading_deg",
+            f"the area is {width:.0f} m wide across it, {width / spacing:.0f} lines. Stay below "
+            f"{LARGEST_LINE_COUNT}: turn the heading, or look for a corner that lies elsewhere.",
+        )
+
+
+def _line_spacing_m(flight: kinds.AreaFlight, camera: Camera) -> float:
     tangent = camera.pixel_footprint_m / camera.design_range_m
     side = camera.rows if camera.long_side == "along" else camera.columns
-    spacing = side * tangent * flight.heights_m[0] * (1.0 - flight.sidelap)
-    area = sound_area_m2(flight, epsg=mission.crs_epsg, folder=folder)
-    return int(area / spacing * flight.flash_rate_hz / flight.speed_m_s), "flight.flash_rate_hz"
+    return side * tangent * flight.heights_m[0] * (1.0 - flight.sidelap)
 
 
 FLIGHT_RULES: tuple[Callable[..., Iterator[Fault]], ...] = (
@@ -154,4 +185,5 @@ FLIGHT_RULES: tuple[Callable[..., Iterator[Fault]], ...] = (
     wind_is_slower_than_the_aircraft,
     recorded_motion_is_in_the_file,
     mission_is_finite,
+    area_takes_few_lines,
 )

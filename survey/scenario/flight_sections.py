@@ -8,11 +8,22 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
-from survey.scenario.sections import Bearing, Count, Flight, NotNegative, Positive, Section, Text
+from survey.scenario.sections import (
+    Bearing,
+    Coordinate,
+    Count,
+    Elevation,
+    Flight,
+    Height,
+    NotNegative,
+    Positive,
+    Section,
+    Text,
+)
 
 Overlap = Annotated[float, Field(ge=0.0, lt=1.0)]
 Bank = Annotated[float, Field(gt=0.0, le=60.0)]
-Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
+Pair = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
 AREA_SUFFIXES = (".geojson", ".json")
 TrackFormat = Literal["csv", "cblue", "sbet"]
 
@@ -20,14 +31,14 @@ TrackFormat = Literal["csv", "cblue", "sbet"]
 class HeightAt(Section):
     """The height above the water at a place along the heading; straight in between."""
 
-    distance_m: float
-    height_m: Positive
+    distance_m: Coordinate
+    height_m: Height
 
 
 class SpeedAt(Section):
     """The ground speed at a place along the heading; straight in between."""
 
-    distance_m: float
+    distance_m: Coordinate
     speed_m_s: Positive
 
 
@@ -60,8 +71,8 @@ class LinesFlight(PlannedFlight):
     """So many parallel lines, each so many flashes long, from a start on the map."""
 
     kind: Literal["lines"] = "lines"
-    start_easting_m: float
-    start_northing_m: float
+    start_easting_m: Coordinate
+    start_northing_m: Coordinate
     frames_per_line: Count
     lines: Count = 1
 
@@ -91,9 +102,9 @@ class RecordedFlight(Flight):
     format: TrackFormat | None = None
     column_prefix: Literal["", "true_", "measured_"] = ""
     legs_s: list[Pair] = Field(default_factory=list)
-    offset_easting_m: float = 0.0
-    offset_northing_m: float = 0.0
-    offset_up_m: float = 0.0
+    offset_easting_m: Coordinate = 0.0
+    offset_northing_m: Coordinate = 0.0
+    offset_up_m: Elevation = 0.0
 
 
 def _with_kind(given: Any) -> Any:

@@ -148,7 +148,7 @@ def _text(file: Path) -> str:
         with file.open("rb") as stream:
             content = stream.read(LARGEST_FILE_BYTES + 1)
         if len(content) <= LARGEST_FILE_BYTES:
-            return content.decode()
+            return content.decode("utf-8-sig")
         fault = Fault("file", "larger than 1 MB. Is it a scenario?")
     except OSError as error:
         fault = Fault("file", f"cannot be read: {error.strerror}.")

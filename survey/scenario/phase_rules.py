@@ -7,7 +7,7 @@ from math import fsum
 from pathlib import Path
 
 from survey.scenario import phase_sections as kinds
-from survey.scenario.faults import Fault
+from survey.scenario.faults import Fault, missing_file
 from survey.scenario.phase_parts import build_phase_function
 
 SUM_TOLERANCE = 1e-6
@@ -35,8 +35,8 @@ def _shares_faults(mixture: kinds.MixturePhase, place: str, folder: Path) -> Ite
 
 
 def _table_faults(table: kinds.TablePhase, place: str, folder: Path) -> Iterator[Fault]:
-    if not (folder / table.file).is_file():
-        yield Fault(place, f"no file '{table.file}' in {folder}.", missing_file=True)
+    if missing := list(missing_file(place, table.file, folder)):
+        yield from missing
         return
     try:
         build_phase_function(table, folder=folder)

@@ -6,12 +6,20 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from survey.scenario.sections import Bearing, Fraction, NotNegative, Positive, Section, Text
+from survey.scenario.sections import (
+    Bearing,
+    Coordinate,
+    Fraction,
+    NotNegative,
+    Positive,
+    Section,
+    Text,
+)
 
 Tilt = Annotated[float, Field(ge=-180.0, le=180.0)]
 Relief = Annotated[float, Field(ge=0.0, le=0.3)]
 Seed = Annotated[int, Field(ge=0, lt=2**40)]
-Place = Annotated[list[float], Field(min_length=2, max_length=2)]
+Place = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
 
 
 class Material(Section):
@@ -27,8 +35,8 @@ class Placed(Material):
     A positive list lowers its starboard side, a positive trim lifts its bow.
     """
 
-    easting_m: float
-    northing_m: float
+    easting_m: Coordinate
+    northing_m: Coordinate
     heading_deg: Bearing = 0.0
     list_deg: Tilt = 0.0
     trim_deg: Tilt = 0.0
@@ -61,8 +69,8 @@ class Boulders(Material):
     """
 
     kind: Literal["boulders"]
-    easting_m: float
-    northing_m: float
+    easting_m: Coordinate
+    northing_m: Coordinate
     heading_deg: Bearing = 0.0
     length_m: Positive
     width_m: Positive

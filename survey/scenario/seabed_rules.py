@@ -6,11 +6,12 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from survey.scenario import seabed_sections as kinds
-from survey.scenario.faults import Fault, did_you_mean
+from survey.scenario.faults import Fault, did_you_mean, missing_file
 from survey.scenario.seabed_materials import MOST_OWN_NAMES, materials, own_names, reef_material
 from survey.scenario.seabed_object_sections import Boulders, Material
 from survey.scenario.seabed_sections import SeabedSection
 from survey.scenario.sections import Laser, Section
+from terrain.extent import MOST_BOULDERS, MOST_CELLS
 from terrain.substrate import known_substrates
 
 TABLE_WAVELENGTH_NM = 532.0
@@ -65,6 +66,34 @@ def boulders_ascend(seabed: SeabedSection) -> Iterator[Fault]:
             )
 
 
+def boulders_fit_into_memory(seabed: SeabedSection) -> Iterator[Fault]:
+    """A field holds no more boulders than a mesh can."""
+    for number, part in enumerate(seabed.objects):
+        if isinstance(part, Boulders):
+            expected = part.length_m * part.width_m * part.density_per_m2
+            if expected > MOST_BOULDERS:
+                yield Fault(
+                    f"seabed.objects.{number}.density_per_m2",
+                    f"{expected:.3g} boulders are expected, more than {MOST_BOULDERS:,}. Take a "
+                    "smaller field or density.",
+                )
+
+
+def cells_fit_into_memory(seabed: SeabedSection) -> Iterator[Fault]:
+    """A made seabed has no more cells than a mesh can, counted over its margins alone."""
+    if not isinstance(seabed, kinds.MadeSeabed):
+        return
+    if isinstance(seabed, kinds.PlaneSeabed | kinds.SlopeSeabed) and seabed.roughness_rms_m == 0.0:
+        return
+    cells = (2.0 * seabed.margin_m / seabed.spacing_m) ** 2
+    if cells > MOST_CELLS:
+        yield Fault(
+            "seabed.spacing_m",
+            f"{seabed.spacing_m:g} m and margin_m {seabed.margin_m:g} make {cells:.3g} cells, more "
+            f"than {MOST_CELLS:,}. Widen the spacing or take a smaller margin.",
+        )
+
+
 def substrates_are_known(seabed: SeabedSection, laser: Laser) -> Iterator[Fault]:
     """Every substrate is in the table, which holds at 532 nm, or has a reflectance of its own."""
     parts = dict(materials(seabed))
@@ -112,8 +141,8 @@ def files_exist(seabed: SeabedSection, folder: Path) -> Iterator[Fault]:
     named |= {f"seabed.objects.{number}.file": part for number, part in enumerate(seabed.objects)}
     for place, part in named.items():
         file = getattr(part, "file", None)
-        if file is not None and not (folder / file).is_file():
-            yield Fault(place, f"no file '{file}' in {folder}.", missing_file=True)
+        if file is not None:
+            yield from missing_file(place, file, folder)
 
 
 SEABED_RULES: tuple[Callable[..., Iterator[Fault]], ...] = (
@@ -121,6 +150,8 @@ SEABED_RULES: tuple[Callable[..., Iterator[Fault]], ...] = (
     reef_is_shallower,
     ripples_are_resolved,
     boulders_ascend,
+    boulders_fit_into_memory,
+    cells_fit_into_memory,
     substrates_are_known,
     map_values_differ,
     files_exist,

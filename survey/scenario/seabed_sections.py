@@ -8,7 +8,17 @@ from pydantic import BeforeValidator, Field
 from pydantic_core import PydanticCustomError
 
 from survey.scenario.seabed_object_sections import Material, SeabedObject, Seed
-from survey.scenario.sections import Bearing, Count, Fraction, NotNegative, Positive, Section, Text
+from survey.scenario.sections import (
+    Bearing,
+    Coordinate,
+    Count,
+    Elevation,
+    Fraction,
+    NotNegative,
+    Positive,
+    Section,
+    Text,
+)
 
 PointClassCode = Annotated[int, Field(ge=0, le=255)]
 Slope = Annotated[float, Field(gt=0.0, le=80.0)]
@@ -89,9 +99,9 @@ class MeshSeabed(SeabedSection):
 
     kind: Literal["mesh"]
     file: Text
-    offset_easting_m: float = 0.0
-    offset_northing_m: float = 0.0
-    offset_up_m: float = 0.0
+    offset_easting_m: Coordinate = 0.0
+    offset_northing_m: Coordinate = 0.0
+    offset_up_m: Elevation = 0.0
 
 
 class MadeSeabed(RoughenedSeabed):
@@ -107,14 +117,14 @@ class PlaneSeabed(MadeSeabed):
     """Level."""
 
     kind: Literal["plane"]
-    depth_m: float
+    depth_m: Elevation
 
 
 class SlopeSeabed(MadeSeabed):
     """Evenly sloping; the depth is that at the flight's start."""
 
     kind: Literal["slope"]
-    depth_m: float
+    depth_m: Elevation
     slope_deg: Slope
     downhill_deg: Bearing
 
@@ -127,7 +137,7 @@ class SandbarSeabed(MadeSeabed):
     """
 
     kind: Literal["sandbar"]
-    shoreline_m: float
+    shoreline_m: Coordinate
     offshore_deg: Bearing
     slope_deg: Slope
     bar_distance_m: Positive
@@ -141,10 +151,10 @@ class ChannelSeabed(MadeSeabed):
     """A level bed with a channel of trapezoidal section through a point of the map."""
 
     kind: Literal["channel"]
-    depth_m: float
-    channel_depth_m: float
-    channel_easting_m: float
-    channel_northing_m: float
+    depth_m: Elevation
+    channel_depth_m: Elevation
+    channel_easting_m: Coordinate
+    channel_northing_m: Coordinate
     channel_heading_deg: Bearing
     floor_width_m: Positive
     side_slope_deg: Slope
@@ -154,7 +164,7 @@ class RipplesSeabed(MadeSeabed):
     """Sand ripples; the depth is their mean, the steep flank falls to the right of the crests."""
 
     kind: Literal["ripples"]
-    depth_m: float
+    depth_m: Elevation
     wavelength_m: Positive
     height_m: Positive
     crest_deg: Bearing
@@ -168,10 +178,10 @@ class ReefSeabed(MadeSeabed):
     """A level bed with a flat-topped rough reef through a point of the map."""
 
     kind: Literal["reef"]
-    depth_m: float
-    reef_depth_m: float
-    reef_easting_m: float
-    reef_northing_m: float
+    depth_m: Elevation
+    reef_depth_m: Elevation
+    reef_easting_m: Coordinate
+    reef_northing_m: Coordinate
     reef_heading_deg: Bearing
     top_width_m: Positive
     side_slope_deg: Slope = 30.0
@@ -188,7 +198,7 @@ class RoughSeabed(MadeSeabed):
     """Level but for its roughness."""
 
     kind: Literal["rough"]
-    depth_m: float
+    depth_m: Elevation
     roughness_rms_m: Positive = 0.15
 
 

@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 from datetime import UTC, datetime
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, field_validator
+from pydantic_core import PydanticCustomError
 
+from terrain.extent import FARTHEST, HIGHEST
+
+LEAST_SIZE, LARGEST_SIZE = 1e-15, 1e12
+"""Of any number but 0 in a scenario: products and quotients of such numbers stay finite."""
 Positive = Annotated[float, Field(gt=0.0)]
 NotNegative = Annotated[float, Field(ge=0.0)]
 Fraction = Annotated[float, Field(gt=0.0, le=1.0)]
-Count = Annotated[int, Field(ge=1)]
+Count = Annotated[int, Field(ge=1, le=2**31 - 1)]
+Height = Annotated[float, Field(gt=0.0, le=20_000.0)]
+Elevation = Annotated[float, Field(ge=-HIGHEST, le=HIGHEST)]
+Coordinate = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST)]
 Bearing = Annotated[float, Field(ge=0.0, lt=360.0)]
 Text = Annotated[str, Field(min_length=1)]
 
@@ -23,6 +31,15 @@ class Section(BaseModel):
     )
 
     source: Text | None = None
+
+    @field_validator("*")
+    @classmethod
+    def _can_be_reckoned_with(cls, value: Any) -> Any:
+        if isinstance(value, float) and value and not LEAST_SIZE <= abs(value) <= LARGEST_SIZE:
+            raise PydanticCustomError(
+                "beyond_reckoning", f"of a size beyond {LEAST_SIZE:g} to {LARGEST_SIZE:g}"
+            )
+        return value
 
 
 class Mission(Section):
@@ -48,7 +65,7 @@ class Flight(Section):
     """
 
     kind: str
-    height_m: Positive = 200.0
+    height_m: Height = 200.0
     speed_m_s: Positive = 100.0
     flash_rate_hz: Positive = 1.0
 
@@ -111,7 +128,7 @@ class Sun(Section):
     model: Literal["low_flight", "high_flight", "layered"] = "low_flight"
     zenith_deg: Annotated[float, Field(ge=0.0, lt=90.0)] = 20.0
     azimuth_deg: Bearing = 180.0
-    optical_thickness: NotNegative = 0.3
+    optical_thickness: Annotated[float, Field(ge=0.0, le=100.0)] = 0.3
     air_extinction_per_m: NotNegative | None = None
     legendre_moment: Annotated[float, Field(ge=-3.0, le=3.0)] = 1.5
     spectrum: Literal["stated", "astm_g173"] = "stated"
@@ -125,9 +142,9 @@ class Sun(Section):
 class Transport(Section):
     """How many light paths the Monte Carlo makes and where it splits them."""
 
-    walks_per_pixel: Annotated[int, Field(ge=3)] = 64
-    replicates: Annotated[int, Field(ge=3)] = 4
-    tracks_per_replicate: Annotated[int, Field(ge=16)] = 1024
+    walks_per_pixel: Annotated[int, Field(ge=3, le=1_000_000)] = 64
+    replicates: Annotated[int, Field(ge=3, le=1000)] = 4
+    tracks_per_replicate: Annotated[int, Field(ge=16, le=10_000_000)] = 1024
     split_angle_deg: Annotated[float, Field(gt=0.0, lt=90.0)] = 45.0
     column_spacing: Positive = 1.0
 
@@ -154,11 +171,11 @@ class Processing(Section):
     correct_scattering: bool = True
     water_level_error_m: Annotated[float, Field(ge=-10.0, le=10.0)] = 0.0
     thinning_m: NotNegative = 1.0
-    grid_m: Positive = 2.0
+    grid_m: Annotated[float, Field(ge=0.01)] = 2.0
     keep_waveforms: Literal["none", "sampled", "all"] = "none"
 
 
 class Run(Section):
     """How the work is shared out; 0 workers means one for each core."""
 
-    workers: Annotated[int, Field(ge=0)] = 0
+    workers: Annotated[int, Field(ge=0, le=10_000)] = 0

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from survey.scenario.sections import Bearing, Positive, Section
+from survey.scenario.sections import Bearing, Elevation, Positive, Section
 
 
 class Waves(Section):
@@ -17,7 +17,7 @@ class Waves(Section):
     """
 
     spectrum: Literal["pierson_moskowitz", "jonswap"]
-    fetch_km: Positive | None = None
+    fetch_km: Annotated[float, Field(ge=0.01, le=20_000.0)] | None = None
     shortest_m: Annotated[float, Field(ge=0.5, le=50.0)] = 2.0
     patch_m: Positive = 512.0
 
@@ -45,7 +45,7 @@ class Surface(Section):
     `wave_depth_m` is the depth that waves feel; without one they run as over deep water.
     """
 
-    water_level_m: float
+    water_level_m: Elevation
     tide: Tide | None = None
     wind_speed_m_s: Annotated[float, Field(ge=0.0, le=20.0)] = 5.0
     wind_from_deg: Bearing = 0.0

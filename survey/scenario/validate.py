@@ -95,8 +95,20 @@ def _faults_besides_the_kind(
 def _fault(way: Way, detail: ErrorDetails) -> Fault:
     place = ".".join(shown_key(step) for step in way.shown)
     if detail["type"].startswith("union_tag"):
-        place += "." + detail["ctx"]["discriminator"].strip("'")
+        key = detail["ctx"]["discriminator"].strip("'")
+        misspelt = _misspelt(key, way, detail["input"])
+        if misspelt is not None:
+            return Fault(f"{place}.{shown_key(misspelt)}", f"unknown key. Did you mean '{key}'?")
+        place += "." + key
     return Fault(place, _text(way, detail))
+
+
+def _misspelt(key: str, way: Way, table: Any) -> str | None:
+    """Return the unknown key of a table that stands for a missing one, if any is like it."""
+    if not isinstance(table, Mapping) or key in table:
+        return None
+    known = {name for model in way.choices for name in model.model_fields}
+    return nearest(key, table.keys() - known)
 
 
 def _unknown_key(way: Way) -> str:
@@ -163,6 +175,7 @@ _BOUNDS: dict[str, Callable[[dict[str, Any]], str]] = {
 _PLAIN = {
     "missing": "missing. Give it a value.",
     "finite_number": "{given} is not a finite number. Give it a value.",
+    "beyond_reckoning": "{given} is {message}.",
     "float_type": "{given} is not a number.",
     "int_type": "{given} is not a whole number.",
     "bool_type": "{given} is not true or false.",

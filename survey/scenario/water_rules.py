@@ -7,7 +7,7 @@ from math import inf
 from pathlib import Path
 
 from survey.scenario import water_sections as kinds
-from survey.scenario.faults import Fault
+from survey.scenario.faults import Fault, missing_file
 from survey.scenario.phase_rules import phase_faults
 from survey.scenario.sections import Laser, Section, Sun
 
@@ -95,8 +95,8 @@ def profile_can_be_read(water: kinds.WaterSection, folder: Path) -> Iterator[Fau
     from terrain.foreign.faults import ForeignFileError
 
     file = water.profile.file
-    if not (folder / file).is_file():
-        yield Fault("water.profile", f"no file '{file}' in {folder}.", missing_file=True)
+    if missing := list(missing_file("water.profile", file, folder)):
+        yield from missing
         return
     try:
         cast_of(water, folder=folder)

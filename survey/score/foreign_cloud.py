@@ -13,6 +13,7 @@ from pyproj.exceptions import CRSError
 
 from survey.cloud.points import BOTTOM_CLASSES, PointClass
 from survey.score.faults import ScoreError
+from terrain.extent import FARTHEST, HIGHEST
 from terrain.file_faults import require_crs
 from terrain.foreign.limits import limits_for_whole
 from terrain.foreign.reading import read_foreign
@@ -63,7 +64,8 @@ def read_cloud(path: Path, map_frame: MapFrame, *, bottom: Sequence[int] = BOTTO
     FileNotFoundError
         When there is no such file.
     ScoreError, ForeignFileError
-        With every fault: another format or coordinate system, no points, none of the bottom.
+        With every fault: another format or coordinate system, no points, points that are nowhere,
+        none of the bottom.
     """
     if path.suffix.lower() not in READERS:
         raise ScoreError([f"{path}: not a cloud. give a file of {', '.join(READERS)}"])
@@ -73,11 +75,8 @@ def read_cloud(path: Path, map_frame: MapFrame, *, bottom: Sequence[int] = BOTTO
     faults, notes = _crs(str(found["crs"]), map_frame, path)
     if len(points) == 0:
         faults.append(f"{path}: points: the cloud is empty")
-    elif not np.isfinite(points).all():
-        wrong = np.flatnonzero(~np.isfinite(points).all(axis=1))
-        faults.append(
-            f"{path}: point {wrong[0]}: not finite, like {len(wrong) - 1} more. leave them out"
-        )
+    else:
+        faults += _places(points, path)
     if len(classes) == 0:
         classes = np.full(len(points), PointClass.BATHYMETRIC, dtype=np.uint8)
         notes.append("the file has no classes: every point is taken for bottom")
@@ -95,6 +94,19 @@ def read_cloud(path: Path, map_frame: MapFrame, *, bottom: Sequence[int] = BOTTO
     return ForeignCloud(
         position=map_frame.to_local(points), classification=classes, bottom=claimed, notes=notes
     )
+
+
+def _places(points: FloatArray, path: Path) -> list[str]:
+    """Return the fault of points that are nowhere on a map."""
+    there = np.abs(points) <= (FARTHEST, FARTHEST, HIGHEST)
+    wrong = np.flatnonzero(~there.all(axis=1))
+    if wrong.size == 0:
+        return []
+    place = ", ".join(f"{value:g}" for value in points[wrong[0]])
+    what = "beyond the ground of any map" if np.isfinite(points[wrong[0]]).all() else "not finite"
+    return [
+        f"{path}: point {wrong[0]}: {what} ({place}), like {len(wrong) - 1} more. leave them out"
+    ]
 
 
 def _crs(text: str, map_frame: MapFrame, path: Path) -> tuple[list[str], list[str]]:

@@ -18,7 +18,7 @@ from terrain.foreign.faults import ReaderError, readable
 from terrain.foreign.las_header import require_plausible_header
 from terrain.foreign.las_reader import POINTS_AT_ONCE
 from terrain.foreign.ply_vertices import read_vertices
-from terrain.foreign.text_table import few
+from terrain.foreign.text_table import few, is_number
 
 NAMES = {
     "x": ("x", "easting_m", "easting", "east", "e", "x_m"),
@@ -115,18 +115,10 @@ def _numbers(
         for line, row in enumerate(rows, start=2):
             words = row.split(separator)
             for name, column in zip(names, columns, strict=True):
-                if row.strip() and not _is_number(words, column):
+                if row.strip() and not (column < len(words) and is_number(words[column])):
                     shown = repr(words[column].strip()) if column < len(words) else "missing"
                     faults.append(f"line {line}: {name}: {shown} is no number")
         raise ReaderError(*few(faults)) from None
-
-
-def _is_number(words: list[str], column: int) -> bool:
-    try:
-        float(words[column])
-    except (ValueError, IndexError):
-        return False
-    return True
 
 
 def _chosen(names: list[str], place: str) -> dict[str, str]:

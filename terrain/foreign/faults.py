@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+LONGEST_REASON = 200
 NO_MEMORY = ("memory", "cannot allocate", "unable to allocate", "bad_alloc")
 
 
@@ -48,7 +49,7 @@ def readable(what: str) -> Iterator[None]:
         reason = _first_cause(error)
         if speaks_of_memory(reason):
             raise MemoryError(reason) from error
-        raise ReaderError(f"not a readable {what}. {reason}") from error
+        raise ReaderError(f"not a readable {what}: fetch or export it again. {reason}") from error
 
 
 def speaks_of_memory(words: str) -> bool:
@@ -66,4 +67,5 @@ def _first_cause(error: BaseException) -> str:
     """Return in one line what was raised first; libraries wrap it in "see previous"."""
     while error.__cause__ is not None:
         error = error.__cause__
-    return " ".join(str(error).split()) or type(error).__name__
+    reason = " ".join(str(error).split()) or type(error).__name__
+    return reason if len(reason) <= LONGEST_REASON else f"{reason[:LONGEST_REASON]}..."

@@ -31,7 +31,9 @@ def require_plausible_header(path: Path) -> None:
     with path.open("rb") as source:
         head = source.read(HEADER_OF_1_4)
     if head[:4] != b"LASF" or len(head) < SMALLEST_HEADER:
-        raise ReaderError("not a readable LAS or LAZ file. it has no LAS header")
+        raise ReaderError(
+            "not a readable LAS or LAZ file: fetch or export it again. It has no LAS header"
+        )
     if not _fits(head, size):
         raise ReaderError(
             "not a readable LAS or LAZ file. the sizes in its header contradict its "

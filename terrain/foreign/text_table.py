@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -42,11 +44,36 @@ def _row_faults(words: list[str], names: tuple[str, ...], line: int) -> list[str
         return [f"line {line}: {len(words)} columns, but there should be {len(names)}"]
     faults = []
     for word, name in zip(words, names, strict=True):
-        try:
-            float(word)
-        except ValueError:
+        if not is_number(word):
             faults.append(f"line {line}: {name} {word.strip()!r} is not a number")
     return faults
+
+
+def doubled(names: Sequence[str]) -> list[str]:
+    """Return the fault of each name in a header that stands there twice.
+
+    Examples
+    --------
+    >>> doubled(["x", "y", "x"])
+    ['line 1: column x stands there twice. Leave one out']
+    """
+    twice = sorted({name for name in names if names.count(name) > 1})
+    return [f"line 1: column {name} stands there twice. Leave one out" for name in twice]
+
+
+def is_number(word: str) -> bool:
+    """Tell whether a word of a file is a number: in plain digits, without marks between them.
+
+    Examples
+    --------
+    >>> is_number(" -1.5e3"), is_number("1_000"), is_number("\u0661\u0662"), is_number("nan")
+    (True, False, False, True)
+    """
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return word.isascii() and "_" not in word
 
 
 def few(faults: list[str]) -> list[str]:

@@ -222,5 +222,5 @@ def test_check_reads_every_file_of_a_seabed_and_tells_all_faults(
         "bed.tif: nodata: the file does not say which cells have no data",
         "cover.tif: class 5: no substrate is given",
         "hut.obj: vertex 1: a coordinate is not a finite number",
-        "hut.ply: not a readable mesh file",
+        "hut.ply: not a readable mesh file: fetch or export it again",
     ]

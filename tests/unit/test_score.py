@@ -16,16 +16,8 @@ from pyproj import CRS
 from typer.testing import CliRunner
 
 from survey.cli import app
-from survey.cloud.georeference import pixel_rays
-from survey.cloud.points import Outcome, PixelRecord, PointClass, PointCloud
-from survey.cloud.truth import true_targets
-from survey.flight.pose import Frame
-from survey.preparation import product_settings
-from survey.products.frame_file import FrameResult
 from survey.products.las_file import write_laz
 from survey.products.ply_file import read_ply
-from survey.products.run_products import write_products
-from survey.run_folder import RunFolder
 from survey.scenario import components
 from survey.scenario.scenario import Scenario
 from survey.score.score import score_cloud
@@ -35,84 +27,16 @@ from terrain.foreign.faults import ReaderError
 from terrain.generators import Ground, plane
 from terrain.map_frame import MapFrame
 from terrain.objects import cube, place
-from terrain.seabed import Seabed
+from tests.unit.scored_run import TABLES, make_run
 
 FloatArray = NDArray[np.float64]
 FIGURES = ("bias_m", "rmse_m", "p95_abs_error_m", "false_bottoms")
-TABLES: dict[str, Any] = {
-    "mission": {"title": "a benchmark", "seed": 7},
-    "flight": {
-        **{"start_easting_m": 500250.0, "start_northing_m": 6000750.0, "heading_deg": 90.0},
-        **{"frames_per_line": 2, "speed_m_s": 20.0},
-    },
-    "camera": {"rows": 8, "columns": 16},
-    "receiver": {"aperture_radius_m": 0.005, "filter_width_nm": 1.0},
-    "detector": {"quantum_efficiency": 0.2, "dark_count_rate_hz": 1.0e4},
-    "water": {"type": "coastal"},
-    "surface": {"water_level_m": 0.5},
-    "seabed": {"kind": "slope", "depth_m": 3.0, "slope_deg": 3.0, "downhill_deg": 90.0},
-    "transport": {"walks_per_pixel": 16},
-}
 
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory, small_survey: Any) -> Path:
-    """A run of two frames of 16 x 8 pixels over a slope from 3 m, its echoes made by hand."""
-    folder = tmp_path_factory.mktemp("score")
-    scenario = Scenario.from_tables(TABLES, name="reef.toml", folder=folder)
-    seabed, flashes = components.seabed(scenario), components.frames(scenario)
-    kept = RunFolder.open(folder / "run", scenario)
-    for frame in flashes:
-        kept.keep(frame.index, seen(small_survey.bottom, scenario, seabed, frame))
-    write_products(
-        kept.path,
-        read=kept.frame,
-        frames=flashes,
-        seabed=seabed,
-        settings=product_settings(scenario),
-    )
-    return kept.path
-
-
-def seen(some: PointCloud, scenario: Scenario, seabed: Seabed, frame: Frame) -> FrameResult:
-    """Return a frame that finds every bottom with errors of 5 cm, but one 2 m too high.
-
-    What is not said here the points have from ``some``.
-    """
-    camera, random = components.camera(scenario), np.random.default_rng(frame.index)
-    targets = true_targets(
-        seabed=seabed,
-        surface=components.sea_surface(scenario),
-        water=components.water(scenario),
-        pose=frame.pose,
-        rays=pixel_rays(camera=camera, pose=frame.pose),
-    )
-    shape = targets.depth.shape
-    row, column = (index.ravel() for index in np.indices(shape))
-    truth = targets.position.reshape(-1, 3)
-    position = truth + random.normal([0.0, 0.0, -0.03], 0.05, truth.shape)
-    position[0, 2] += 2.0
-    n = len(truth)
-    cloud = replace(
-        some.select(np.zeros(n, dtype=np.intp)),
-        position=position,
-        uncorrected=position,
-        truth=truth,
-        classification=np.full(n, PointClass.BATHYMETRIC, dtype=np.uint8),
-        true_elevation=seabed.elevation_at(position[:, 0], position[:, 1]),
-        frame=np.full(n, frame.index, dtype=np.uint32),
-        row=row.astype(np.uint16),
-        column=column.astype(np.uint16),
-    )
-    record = PixelRecord(
-        true_position=targets.position,
-        true_depth=targets.depth,
-        detection_probability=np.where(column.reshape(shape) < 15, 0.99, 0.5),
-        outcome=np.full(shape, Outcome.FOUND, dtype=np.uint8),
-        bottom_counts=np.full(shape, 100.0),
-        monte_carlo_relative_error=np.full(shape, 0.05),
-    )
-    return FrameResult(bottom=cloud, surface=cloud.select(slice(0, 0)), record=record)
+    """A run of two frames over a slope, its echoes made by hand."""
+    return make_run(tmp_path_factory.mktemp("score"), small_survey.bottom)
 
 
 def metrics(run: Path) -> dict[str, Any]:

@@ -50,7 +50,10 @@ def test_arrays_and_words_come_back() -> None:
     ("reader", "line"),
     [
         ("find_faults", "wreck.ply: face 3: no area\nwreck.ply: vertex 5: not finite"),
-        ("stumble", "wreck.ply: not a readable mesh file. 'offset\\n of chunk'"),
+        (
+            "stumble",
+            "wreck.ply: not a readable mesh file: fetch or export it again. 'offset\\n of chunk'",
+        ),
         ("forget", "wreck.ply: the reader failed. RuntimeError: what is this?"),
         ("abort", "wreck.ply: the reader crashed (SIGABRT). the file is damaged"),
         ("overrun", "wreck.ply: the reader crashed (SIGSEGV). the file is damaged"),

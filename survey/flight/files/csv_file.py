@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from survey.flight.files.faults import FlightFileError, text_of, track_faults
 from survey.flight.track import Track
-from terrain.foreign.text_table import few, numbers
+from terrain.extent import FARTHEST
+from terrain.foreign.text_table import doubled, few, numbers
 
 FloatArray = NDArray[np.float64]
 
@@ -25,6 +26,7 @@ GEOGRAPHIC = ("lon_deg", "lat_deg", "alt_m")
 ANGLES = ("roll_deg", "pitch_deg", "heading_deg")
 QUATERNION = ("qw", "qx", "qy", "qz")
 LIMITS = {
+    **{"easting_m": FARTHEST, "northing_m": FARTHEST},
     **{"lon_deg": 360.0, "lat_deg": 90.0, "alt_m": 1e5, "up_m": 1e5},
     **{"roll_deg": 180.0, "pitch_deg": 90.0, "heading_deg": 720.0},
 }
@@ -58,8 +60,9 @@ def read_csv_track(path: Path, *, epsg: int, prefix: str = "") -> Track:
         for name in (TIME, *(prefix + name for name in (*place, *attitude)))
         if name not in names
     ]
-    if missing:
-        raise FlightFileError(path, missing)
+    used = [name for name in names if name.removeprefix(prefix) in (TIME, *place, *attitude)]
+    if faults := missing + doubled(used):
+        raise FlightFileError(path, faults)
     try:
         table = numbers(rows, names=names, separator=",", first_line=2)
     except ValueError as error:

@@ -54,7 +54,7 @@ def text_of(path: Path) -> str:
     try:
         return content_of(path, largest=LARGEST_TRACK_BYTES).decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise FlightFileError(path, ["not UTF-8 text"]) from error
+        raise FlightFileError(path, ["not UTF-8 text. Save it as UTF-8"]) from error
 
 
 def track_faults(

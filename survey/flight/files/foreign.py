@@ -21,8 +21,11 @@ from survey.flight.track import Track
 from terrain.foreign.faults import ForeignFileError, ReaderError
 from terrain.foreign.limits import limits_for_whole
 from terrain.foreign.reading import read_foreign
+from terrain.foreign.text_table import few
 
 FloatArray = NDArray[np.float64]
+
+FASTEST = 1000.0  # [m/s]
 
 
 def read_track(path: Path, *, kind: str, epsg: int, prefix: str = "") -> Track:
@@ -75,9 +78,23 @@ def track_columns(path: str, *, kind: str, epsg: int, prefix: str) -> dict[str, 
     """
     with _told_to_the_parent():
         if kind == "csv":
-            return asdict(read_csv_track(Path(path), epsg=epsg, prefix=prefix))
-        reader = {"cblue": read_cblue, "sbet": read_sbet}[kind]
-        return asdict(reader(Path(path), epsg=epsg))
+            track = read_csv_track(Path(path), epsg=epsg, prefix=prefix)
+        else:
+            track = {"cblue": read_cblue, "sbet": read_sbet}[kind](Path(path), epsg=epsg)
+        if faults := _jumps(track):
+            raise FlightFileError(Path(path), few(faults))
+        return asdict(track)
+
+
+def _jumps(track: Track) -> list[str]:
+    """Return where a track goes faster than any aircraft."""
+    way = np.linalg.norm(np.diff(track.position, axis=0), axis=1)
+    apart = np.diff(track.time)
+    return [
+        f"at {track.time[i + 1]:.12g} s it jumps by {way[i]:.3g} m in {apart[i]:.3g} s. "
+        "Leave out false places, or correct the longitude"
+        for i in np.flatnonzero(np.isfinite(way) & (way > FASTEST * apart))
+    ]
 
 
 def area_corners(path: str, *, epsg: int) -> dict[str, FloatArray]:

@@ -14,6 +14,7 @@ from pyproj import Transformer
 from pyproj.exceptions import CRSError
 
 from survey.flight.files.faults import FlightFileError, content_of
+from terrain.extent import FARTHEST
 
 FloatArray = NDArray[np.float64]
 
@@ -35,17 +36,33 @@ def read_area(path: Path, *, epsg: int) -> FloatArray:
         When it is no GeoJSON, or holds none or several polygons or one with holes.
     """
     try:
-        value = json.loads(content_of(path, largest=LARGEST_AREA_BYTES))
-    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
-        raise FlightFileError(path, [f"no GeoJSON: {error}"]) from error
+        content = content_of(path, largest=LARGEST_AREA_BYTES)
+        value = json.loads(content, object_pairs_hook=_without_doubles)
+    except (ValueError, RecursionError) as error:
+        if isinstance(error, FlightFileError):
+            raise
+        raise FlightFileError(path, [f"no GeoJSON: {error}. Export it again"]) from error
     polygons = [part for shape in _geometries(value) for part in _polygons(shape)]
     if len(polygons) != 1:
         raise FlightFileError(path, [f"{len(polygons)} polygons. Keep one"])
     rings = polygons[0]
-    if not isinstance(rings, list) or len(rings) != 1:
-        holes = len(rings) - 1 if isinstance(rings, list) else 0
+    if not isinstance(rings, list) or not rings:
+        raise FlightFileError(path, ["the polygon has no outline. Give its corners"])
+    if len(rings) > 1:
+        holes = len(rings) - 1
         raise FlightFileError(path, [f"the polygon has {holes} holes. Keep its outline alone"])
-    return _on_map(_corners(path, rings[0]), _code(path, value), epsg, path)
+    ring = _on_map(_places(path, rings[0]), _code(path, value), epsg, path)
+    if len(ring) < 2 or (ring[0] != ring[-1]).any():
+        raise FlightFileError(path, ["the outline is open. End it with its first corner"])
+    return ring[:-1]
+
+
+def _without_doubles(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Return the members of an object; ValueError where one stands there twice."""
+    members = dict(pairs)
+    if len(members) < len(pairs):
+        raise ValueError(f"a member twice in one object, of {', '.join(members)}")
+    return members
 
 
 def _geometries(value: Any) -> list[Mapping[str, Any]]:
@@ -70,15 +87,20 @@ def _polygons(shape: Mapping[str, Any]) -> list[Any]:
     return []
 
 
-def _corners(path: Path, ring: Any) -> FloatArray:
-    """Return the coordinates (n, 2) of a ring without the repeated end."""
-    try:
-        corners = np.array([[float(place[0]), float(place[1])] for place in ring])
-    except (TypeError, ValueError, IndexError, KeyError, OverflowError) as error:
-        raise FlightFileError(path, ["a corner is not a pair of numbers"]) from error
-    if len(corners) > 1 and (corners[0] == corners[-1]).all():
-        corners = corners[:-1]
-    return corners.reshape(-1, 2)
+def _places(path: Path, ring: Any) -> FloatArray:
+    """Return the coordinates (n, 2) of a ring."""
+    if not isinstance(ring, list) or not all(map(_is_place, ring)):
+        raise FlightFileError(path, ["a corner is not a pair of numbers. Give [east, north]"])
+    return np.array([place[:2] for place in ring], dtype=np.float64).reshape(-1, 2)
+
+
+def _is_place(place: Any) -> bool:
+    """Tell whether a value is two numbers or three that may lie on a map."""
+    return (
+        isinstance(place, list)
+        and len(place) in (2, 3)
+        and all(type(number) in (int, float) and abs(number) <= FARTHEST for number in place)
+    )
 
 
 def _code(path: Path, value: Any) -> int:

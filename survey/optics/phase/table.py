@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import reprlib
 from collections.abc import Callable, Iterator
 from functools import lru_cache
 from itertools import pairwise
@@ -16,6 +17,7 @@ from survey.optics.phase.function import FloatArray, PhaseFunction
 from terrain.foreign.faults import ForeignFileError, ReaderError
 from terrain.foreign.limits import limits_for_whole
 from terrain.foreign.reading import read_foreign
+from terrain.foreign.text_table import is_number
 
 HEADER = ["angle_deg", "value"]
 LAST_ANGLE_TOLERANCE = 1e-6
@@ -188,12 +190,11 @@ def _read_rows(path: Path) -> tuple[list[Row], list[tuple[int, str]]]:
             if cells != HEADER:
                 faults.append((line, f"'{','.join(cells)}': must be the header angle_deg,value"))
             continue
-        try:
-            angle, value = (float(cell) for cell in cells)
-        except ValueError:
-            faults.append((line, f"'{','.join(cells)}': must be two numbers with a comma between"))
+        if len(cells) == 2 and all(map(is_number, cells)):
+            rows.append((line, float(cells[0]), float(cells[1])))
         else:
-            rows.append((line, angle, value))
+            shown = reprlib.repr(",".join(cells))
+            faults.append((line, f"{shown}: must be two numbers with a comma between"))
     return rows, faults
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from terrain.foreign.faults import ReaderError
 from terrain.foreign.limits import limits_for_whole
 from terrain.foreign.reading import read_foreign
-from terrain.foreign.text_table import few, numbers
+from terrain.foreign.text_table import doubled, few, numbers
 
 FloatArray = NDArray[np.float64]
 
@@ -78,12 +78,13 @@ def cast_columns(path: str) -> dict[str, FloatArray]:
     try:
         header, *rows = Path(path).read_text(encoding="utf-8-sig").splitlines() or [""]
     except UnicodeDecodeError as error:
-        raise ReaderError("not UTF-8 text") from error
+        raise ReaderError("not UTF-8 text. Save it as UTF-8") from error
     names = tuple(name.strip() for name in header.split(","))
     missing = [name for name in NEEDED if name not in names]
-    if missing:
-        held = ", ".join(names)
-        raise ReaderError(*(f"line 1: no column {name}. It has {held}" for name in missing))
+    held = ", ".join(names)
+    faults = [f"line 1: no column {name}. It has {held}" for name in missing]
+    if faults := faults + doubled([name for name in names if name in (*NEEDED, BACKSCATTER)]):
+        raise ReaderError(*faults)
     try:
         table = numbers(rows, names=names, separator=",", first_line=2)
     except ValueError as error:
