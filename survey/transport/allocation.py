@@ -24,7 +24,16 @@ PILOTS = 64
 SPREAD = 0.1
 """Relative variance of the light of one path that begins in lit water, as measured [1]."""
 LEFT = 0.6
-"""Share of the variance by beginnings in the dark that the choice of azimuths leaves [1]."""
+"""Share of the variance by beginnings in the dark that the choice of azimuths leaves [1].
+
+Measured, of 24 flashes of pixels at the rim with the choice and without: 0.59 in clear water 20 m
+deep, 0.62 in coastal water 10 m deep.
+"""
+RIM = 0.9
+"""A pixel is at the rim where fewer of its paths begin in lit water [1].
+
+Where nearly all do, choosing helps the bottom no more than the numbers tell and harms the column.
+"""
 
 
 def strays(tracks: Tracks) -> FloatArray:
@@ -53,7 +62,7 @@ def deviations(
 ) -> tuple[FloatArray, NDArray[np.bool_]]:
     """Return the relative standard deviation of one light path in every pixel (pixels,).
 
-    And whether it is at the rim, where some begin in the dark.
+    And whether it is at the rim, where more than a few begin in the dark.
 
     Of the paths that begin where the pixel's ray enters the water and stray a share p begins in
     lit water: the variance is a share `LEFT` of (1 - p) / p, and that of lit paths. Departure: rays
@@ -77,7 +86,7 @@ def deviations(
                 east, north = x + strayed[i, 0], y + strayed[i, 1]
                 lit += light_on_water(optics, level, east, north, pixel, isolated) > 0.0
         share = max(lit, 1) / len(strayed)
-        rims[pixel] = share < 1.0
+        rims[pixel] = share < RIM
         result[pixel] = math.sqrt(LEFT * (1.0 - share) / share + SPREAD)
     return result, rims
 

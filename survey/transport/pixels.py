@@ -386,7 +386,7 @@ def see_all(
 ) -> None:
     """Fill ``mean`` and ``variance`` (2, pixels, bins) with column and bottom.
 
-    ``walks`` (pixels,) are those of a replicate; ``rims`` tells whether some begin in the dark.
+    ``walks`` (pixels,) are those of a replicate; ``rims`` tells where many begin in the dark.
     """
     for pixel in range(mean.shape[1]):
         clear(tally)
