@@ -2,9 +2,14 @@
 
 A few azimuths of the track are tried, each with a facet of its own, and one is taken in proportion
 to how likely it is that light comes that way: at the edge of the lit area others begin in the dark,
-and a wave has facets of a slope only where it leans about so. How likely is told to first order,
-which does no harm: light is weighted by the mean of those tried over the one that was taken
-(resampled importance sampling, Talbot, Cline and Egbert 2005).
+and a wave has facets of a slope only where it leans about so. How likely is told to first order.
+
+That is fair whatever the guess (resampled importance sampling, Talbot, Cline and Egbert 2005). Of N
+tries, each spread as it would be alone, let try j bring light g_j and be taken with a chance P_j
+that is never zero. Its light counts 1 / (N P_j), so that on average the sum of P_j g_j / (N P_j) is
+told: the mean of the g_j, which is right since each of them is. Here P_j is a share 1 - B of the
+guess and B / N. The blind share B takes the first try, but the tries are evenly spaced modulo 1 and
+any of them is as likely the first: over all such sets, too, it takes each as often.
 """
 
 from __future__ import annotations
@@ -27,12 +32,12 @@ from terrain.kernels import inlined_kernel
 from terrain.waves.lattice import elevation_and_slopes
 
 TRIED = 4
-BLINDLY = 0.35
-"""Share of the tracks that take any of those tried, likely or not.
+BLINDLY, BLINDLY_WITH_COLUMN = 0.2, 0.35
+"""Share of the tracks that take any of those tried, likely or not; no weight is above one over it.
 
-For the column, whose light begins elsewhere, and where the guess is wrong: no weight is above
-1 / 0.35. At 0.2 the column errs more than at any azimuth, at 0.5 the bottom under waves by a tenth
-more than now: docs/engine.md.
+It is what a wrong guess costs: at 0.05 the bottom of pixels at the rim errs a sixth more. Where the
+track lights the column as well, whose light begins elsewhere, more of them are blind: on waves at
+0.2 the column errs more than at any azimuth, at 0.5 the bottom a tenth more than now.
 """
 
 
@@ -62,20 +67,23 @@ def aimed(
     """Choose azimuth and facet of a track to a place at a ``depth``, the first azimuth being given.
 
     ``upright`` is the cosine of the light in the air to the vertical. A facet moves the entry by
-    depth x (1 - cos air / (n cos water)) x its slope, to first order.
+    depth x (1 - cos air / (n cos water)) x its slope, to first order; what strays begins ``nearer``
+    to the ray, as in `light_sent`.
     """
     taken, facet, likely, total = turn, Facet(0.0, 0.0, 1.0), 1.0, 0.0
     in_water = 1.0 / math.sqrt(1.0 + ray.slope_x * ray.slope_x + ray.slope_y * ray.slope_y)
     bend = depth * (1.0 - upright / (layers.refractive_index * in_water))
     deeper = min(2.0, depth / max(scene.bounds.depth, GAP))
-    blindly = uniform(state) < BLINDLY
+    nearer = 1.0 / math.sqrt((1.0 + depth * ray.radial) * (1.0 + depth * ray.tangential))
+    blind = BLINDLY_WITH_COLUMN if scene.wavy else BLINDLY
+    blindly = uniform(state) < blind
     radius, angle = uniform(state), uniform(state)
     for i in range(TRIED):
         tried, chance = fraction(turn + i / TRIED), 1.0
         other = facet_at(scene, method, fraction(radius + i / TRIED), fraction(angle + i / TRIED))
         east, north = aside_of(layers, tracks, 2 * sight.batch, way, method.circle, tried)
-        x = ray.x - deeper * east - bend * other.slope_x
-        y = ray.y - deeper * north - bend * other.slope_y
+        x = ray.x - nearer * (deeper * east + bend * other.slope_x)
+        y = ray.y - nearer * (deeper * north + bend * other.slope_y)
         if scene.wavy:
             _, wave_x, wave_y = elevation_and_slopes(scene.waves, x, y)
             chance = slope_density(scene.sea, other.slope_x - wave_x, other.slope_y - wave_y)
@@ -88,7 +96,7 @@ def aimed(
         if i == 0 or (not blindly and uniform(state) * total < chance):
             taken, facet, likely = tried, other, chance
     share = likely / total if total > 0.0 else 1.0 / TRIED
-    share = (1.0 - BLINDLY) * share + BLINDLY / TRIED
+    share = (1.0 - blind) * share + blind / TRIED
     return Aim(taken, facet, 1.0 / (TRIED * share))
 
 

@@ -1,8 +1,9 @@
 """How many light paths each pixel gets: more where fewer of them come from lit water.
 
 At the edge of the lit area the light of a pixel comes from one side alone: half of its paths begin
-in the dark, and the others tell its brightness with less certainty. An equal error in all pixels
-costs least when paths are shared out by the standard deviation of one.
+in the dark, and the others tell its brightness with less certainty. The mean square error over all
+pixels is least when paths are shared out by the standard deviation of one (Neyman 1934): that of
+the edge stays above that of the others by the root of how many times as many paths it has.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ LEFT = 0.6
 """Share of the variance by beginnings in the dark that the choice of azimuths leaves [1].
 
 Measured, of 24 flashes of pixels at the rim with the choice and without: 0.59 in clear water 20 m
-deep, 0.62 in coastal water 10 m deep.
+deep, 0.62 in coastal water 10 m deep. Shared out by 0.3 all pixels err the same within 1 %.
 """
 RIM = 0.9
 """A pixel is at the rim where fewer of its paths begin in lit water [1].

@@ -136,8 +136,8 @@ def send_light(
 ) -> None:
     """Send a track down from the surface, and light the place of the bottom and the column.
 
-    It is laid with the azimuth ``turn``, where another is not more likely to bring light.
-    A place with gain 0 is no bottom: light is then sent towards it for the column alone.
+    It is laid with the azimuth ``turn``, where another is not more likely to bring light. A place
+    with gain 0 counts as no bottom: light is sent towards it for the column alone.
     """
     sea = scene.sea
     target = sea.level - place.z
@@ -146,7 +146,7 @@ def send_light(
     dz = sea.level - optics.position[2]
     norm = 1.0 / math.sqrt(dx * dx + dy * dy + dz * dz)
     facet = Facet(0.0, 0.0, 1.0)
-    if scene.wavy or sight.rim:
+    if scene.wavy or (sight.rim and place.gain > 0.0):
         turn, facet, odds = aimed(
             scene, layers, optics, method, tracks, sight, ray, target, -dz * norm, way, turn,
             state,

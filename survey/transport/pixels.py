@@ -247,7 +247,11 @@ def see_bottom(
     evenly: Evenly,
     state: NDArray[np.uint64],
 ) -> None:
-    """Walk back from under the surface, from touch to touch of the bottom, and light it all."""
+    """Walk back from under the surface, from touch to touch of the bottom, and light it all.
+
+    At the rim of what is lit, on a level sea, the column has a track of its own: one chosen to
+    light the bottom is no guide to light that begins elsewhere.
+    """
     limit = longest_path(scene, layers, optics, sight)
     tally.noted[0], entered, which = 0, start.weight, 2 * sight.batch
     back, down = chosen(tracks, which + 1, evenly.back), chosen(tracks, which, evenly.down)
@@ -267,11 +271,14 @@ def see_bottom(
         elif touches > 0:
             return
         gain = sight.importance * touch.weight / entered * rho / math.pi
-        send_light(
-            scene, layers, optics, method, tracks, tally, sight,
-            Place(x, y, z, nx, ny, nz, touch.path, touch.absorbed, gain),
-            down, turn_down, entry_weight * down.weight, touches == 0, state,
-        )  # fmt: skip
+        apart = touches == 0 and gain > 0.0 and sight.rim and not scene.wavy
+        for part in range(2 if apart else 1):
+            send_light(
+                scene, layers, optics, method, tracks, tally, sight,
+                Place(x, y, z, nx, ny, nz, touch.path, touch.absorbed, gain if part == 0 else 0.0),
+                down, turn_down, entry_weight * down.weight,
+                touches == 0 and part == (1 if apart else 0), state,
+            )  # fmt: skip
         if touch.face < 0:
             return
         touches += 1
