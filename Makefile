@@ -38,7 +38,7 @@ check: $(READY)
 	$(BIN)/lint-imports
 
 test: libraries check
-	$(BIN)/python -m pytest -m "not slow"
+	$(BIN)/python -m pytest -m "not slow" --numprocesses=auto --maxprocesses=4 --dist=loadfile
 
 slow: libraries $(READY)
 	$(BIN)/python -m pytest -m slow

@@ -87,7 +87,13 @@ def observe(mission: Mission, frame: Frame) -> Observation:
         scattering=mission.scattering(),
     )
     around = Surroundings(
-        frame=frame, rays=rays, line=line, unknown=unknown, scattering=mission.scattering()
+        frame=frame,
+        rays=rays,
+        line=line,
+        unknown=unknown,
+        scattering=mission.scattering(),
+        first=first,
+        bottom=bottom,
     )
     on_surface, on_bottom = (
         with_causes(

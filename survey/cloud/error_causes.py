@@ -57,7 +57,7 @@ def with_causes(
     by_surface = np.where(wet, straight - targets.position[pixel] - by_pose, 0.0)
     by_level = moves.of_level() * (around.line.level - true_level)
     along = _length(cloud.position - cloud.truth - by_pose - by_surface)
-    noise = budget.late(cloud) * _length(moves.of_time())
+    noise = budget.late(cloud, around) * _length(moves.of_time())
     parts = [_length(by_pose), _length(by_level), _length(by_surface - by_level), along]
     largest = np.nan_to_num(np.stack(parts), nan=0.0).argmax(axis=0)
     on_ray = np.where(along <= WITHIN_NOISE * noise, Cause.RANGE_NOISE, Cause.SCATTERING)

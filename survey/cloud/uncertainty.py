@@ -14,14 +14,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.constants import speed_of_light
 
 from survey.cloud.displacements import Displacements
+from survey.cloud.echo import Echo
 from survey.cloud.frame_points import WaterLine
 from survey.cloud.local_surface import fitted_planes
 from survey.cloud.points import Cause, PointClass, PointCloud
 from survey.cloud.radius import radius_95
 from survey.cloud.scattering import Scattering, off_nadir
-from survey.cloud.time_noise import time_noise
 from survey.cloud.wave_statistics import Unknown
 from survey.flight.navigation import PoseUncertainty
 from survey.flight.pose import Frame
@@ -35,7 +36,10 @@ MEDIAN_OVER_MEAN = 1.2533
 """Standard error of a median over that of a mean, Gaussian errors: sqrt(pi / 2)."""
 WATER_KNOWN = 0.1
 """Assumed: a survey knows its water's scattering to 10 %, and so what it corrects by it."""
-OF_A_PIXEL = (Cause.RANGE_NOISE, Cause.SCATTERING, Cause.WAVES)
+OF_A_PIXEL = (Cause.RANGE_NOISE, Cause.SCATTERING, Cause.FALSE_ECHO, Cause.WAVES)
+FULL_WIDTH = 2.3548
+"""Gate over the pulse's standard deviation: the width at half of the maximum."""
+MERGING_GATES = 1.5
 NEIGHBOURHOOD = 1.5
 """Width of the planes that tell slope and relief of the bed, as in `fitted_planes` [pixels]."""
 
@@ -55,6 +59,8 @@ class Surroundings:
         What is not known of the water where a ray meets it.
     scattering : Scattering
         What has been corrected.
+    first, bottom : Echo
+        Of each pixel.
     """
 
     frame: Frame
@@ -62,6 +68,8 @@ class Surroundings:
     line: WaterLine
     unknown: Unknown
     scattering: Scattering
+    first: Echo
+    bottom: Echo
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,11 +118,12 @@ class Budget:
     def effects(self, cloud: PointCloud, around: Surroundings) -> dict[Cause, FloatArray]:
         """Return the vectors (k, n, 3) of each effect but relief."""
         wet, moves = cloud.depth > 0.0, self.displacements(cloud, around)
-        late = self.late(cloud)
+        late = self.late(cloud, around)
         height, tilt = moves.of_level(), moves.of_slopes()
         return {
             Cause.RANGE_NOISE: (moves.of_time() * late[:, None])[None],
             Cause.SCATTERING: _scattering(cloud, around, moves.rays) * wet[:, None],
+            Cause.FALSE_ECHO: self._merged(cloud),
             Cause.WAVES: np.concatenate(
                 [tilt * around.unknown.slope, height[None] * around.unknown.height]
             ),
@@ -136,18 +145,22 @@ class Budget:
             group_index=self.group_index,
         )
 
-    def late(self, cloud: PointCloud) -> FloatArray:
-        """Return the standard deviation of the points' times by counting noise (n,) [s].
+    def late(self, cloud: PointCloud, around: Surroundings) -> FloatArray:
+        """Return the standard deviation of the points' times by the chance of counts (n,) [s]."""
+        pixel, wet = (cloud.row, cloud.column), cloud.depth > 0.0
+        return np.where(wet, around.bottom.time_error[pixel], around.first.time_error[pixel])
 
-        That of a crest, from what a point itself carries, whatever the search. The likeliest time
-        of the matched search errs by less, as `Echo.time_error` says: by a fifth where counts of
-        the echo outnumber all others, and TVU is as much too wide where these errors rule.
+    def _merged(self, cloud: PointCloud) -> FloatArray:
+        """Return the vectors (1, n, 3) of bottoms whose echoes may be merged with the surface's.
+
+        The search begins a gate after the surface, and its gate reaches half of one back. A bottom
+        that is told nearer than that may lie anywhere up to the surface: a uniform error.
         """
-        return time_noise(
-            counts=cloud.counts.astype(np.float64),
-            snr=cloud.snr.astype(np.float64),
-            pulse_sigma=self.pulse_sigma,
-        )
+        gate = FULL_WIDTH * self.pulse_sigma * 0.5 * speed_of_light / self.group_index
+        near = (cloud.depth > 0.0) & (cloud.depth < MERGING_GATES * gate)
+        vectors = np.zeros((1, len(cloud), 3))
+        vectors[0, :, 2] = np.where(near, cloud.depth, 0.0) / np.sqrt(12.0)
+        return vectors
 
     def _level_error(self, line: WaterLine) -> float:
         """Return the standard error of the level that the median of first echoes tells [m]."""

@@ -24,6 +24,7 @@ from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
+import trimesh
 from numpy.typing import NDArray
 
 from survey.cloud.points import Outcome, PixelRecord, PointClass, PointCloud
@@ -33,6 +34,7 @@ from survey.products.frame_file import FrameResult, frame_bytes, read_frame
 from survey.products.run_products import ProductSettings, write_products
 from survey.sensor.camera import Camera
 from terrain.map_frame import MapFrame
+from terrain.raycast import SeabedGrid, build_grid
 from terrain.seabed import Seabed
 
 FloatArray = NDArray[np.float64]
@@ -43,9 +45,10 @@ ADVANCE, LINES_APART, HEIGHT = 82.0, 41.0, 200.0
 
 @dataclass(frozen=True)
 class FormulaSeabed:
-    """What products ask of a seabed, without a mesh."""
+    """What products ask of a seabed, without a mesh of its own: nothing hides a part of it."""
 
     map_frame: MapFrame
+    grid: SeabedGrid
     substrate_names: dict[int, str] = field(default_factory=lambda: {1: "sand", 2: "rock"})
 
     @staticmethod
@@ -54,7 +57,11 @@ class FormulaSeabed:
         return np.asarray(-11.0 + 6.0 * np.sin(x / 900.0) + 2.0 * np.sin(y / 70.0))
 
 
-SEABED = FormulaSeabed(MapFrame(easting=5e5, northing=6e6, epsg=25832, vertical_epsg=5714))
+FAR_BELOW = trimesh.creation.box(bounds=[[-1.0, -1.0, -900.0], [1.0, 1.0, -899.0]])
+SEABED = FormulaSeabed(
+    grid=build_grid(FAR_BELOW),
+    map_frame=MapFrame(easting=5e5, northing=6e6, epsg=25832, vertical_epsg=5714),
+)
 
 
 def flight(count: int) -> Iterator[Frame]:
@@ -102,6 +109,7 @@ def made(frame: Frame) -> FrameResult:
         water_path=-truth[:, 2].astype(np.float32),
         tvu=random.normal(0.2, 0.01, n).astype(np.float32),
         thu=random.normal(1.0, 0.1, n).astype(np.float32),
+        cause=np.zeros(n, np.uint8),
         surface_elevation=np.zeros(n),
         reflectance=np.full(n, 0.1, np.float32),
         true_reflectance=np.full(n, 0.1, np.float32),
@@ -154,6 +162,8 @@ def settings(thinning: float) -> ProductSettings:
         deviations=(0.0,) * 6,
         water=WaterColumn.uniform(water),
         camera=Camera(rows=8, columns=16, pixel_tangent=0.032, long_side="along"),
+        order=None,
+        cubes=(),
     )
 
 

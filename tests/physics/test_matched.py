@@ -191,6 +191,21 @@ def test_a_weak_tail_does_not_hide_the_strong_echo_before_it() -> None:
     assert np.abs((echo.time - START) / NS - place).max() < 0.5
 
 
+@pytest.mark.parametrize("times", [2.0, 3.0])
+@pytest.mark.parametrize("later", [32.0, 38.0])
+def test_a_valley_parts_a_bottom_from_a_surface_brighter_than_the_model(
+    times: float, later: float
+) -> None:
+    """Under a bright wave the surface's flank is above the threshold all the way to the bottom."""
+    surface = (surface_time() - START) / NS
+    light = water(1200.0, 20.0) + pulse(surface, 50_000.0)
+    flash = light + pulse(surface, 50_000.0 * (times - 1.0)) + pulse(surface + later, 5000.0)
+    counts = COUNTER.read(flash, np.random.default_rng(29)).counts
+    echo = search_over(noise_over(light, 20.0), 5.0).echo(counts)
+    assert echo.found.all()
+    assert np.abs((echo.time - START) / NS - surface - later).max() < 0.5
+
+
 def test_land_and_nothing_at_all_have_no_bottom() -> None:
     light, time = water(20.0, 0.1), surface_time()
     time[:, :5] = np.nan

@@ -14,6 +14,7 @@ SEEDS = (1, 2, 3)
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1200)
 def test_uncertainties_hold_with_every_effect_on() -> None:
     """Three missions: a mission's slow errors of navigation are one draw for many points."""
     found = []

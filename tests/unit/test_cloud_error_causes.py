@@ -57,6 +57,8 @@ def points_of(look: Any, late: float = 0.0, raised: float = 0.0, moved: float = 
         line=line,
         unknown=Unknown(height=0.0, slope=0.0),
         scattering=Scattering.none(),
+        first=look.echo(look.surface_time - early),
+        bottom=look.echo(look.targets.time + late),
     )
     return with_causes(
         BUDGET.applied(cloud, around),

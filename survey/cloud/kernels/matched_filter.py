@@ -13,6 +13,7 @@ Truths = NDArray[np.bool_]
 
 NONE = -1
 ONE = np.float32(1.0)
+VALLEY_DEVIATIONS = 5.0  # of the counts above it, which valleys are deep
 
 
 @leaf_kernel
@@ -108,6 +109,12 @@ def excesses(
                 clipped[row, column, bin_] = min(above, threshold[row, column, place])
 
 
+@leaf_kernel
+def _is_valley(above: np.float32, height: np.float32) -> bool:
+    """Tell whether a sum of counts lies far under an earlier one, of that ``height``."""
+    return bool(height - above > max(0.5 * height, VALLEY_DEVIATIONS * np.sqrt(height)))
+
+
 @kernel
 def last_peaks(
     excess: Singles, threshold: Singles, own: Singles, least: Singles, begin: Whole,
@@ -116,10 +123,12 @@ def last_peaks(
     """Write the bin of the last peak (rows, columns) over the thresholds; `NONE` without one.
 
     A bin fires where ``excess`` reaches ``threshold`` and ``own`` reaches ``least``; a run of bins
-    that fire ends where ``excess`` falls under half its threshold. The highest bin of the last run
-    is the peak, unless it is weaker than ``tail_share`` of some up to ``tail_bins`` before it: then
-    the highest of those is. A bin on the first bin searched, or on a flank of something before it,
-    is no peak: ``excess`` has fallen there since a step earlier, within which the scale is one.
+    that fire ends where ``excess`` falls under half its threshold, or as far under half its highest
+    that chance does not do it: so a valley parts a bottom from a surface brighter than the model's.
+    The highest bin of the last run is the peak, unless it is weaker than ``tail_share`` of some up
+    to ``tail_bins`` before it: then the highest of those is. A bin on the first bin searched, or on
+    a flank of something before it, is no peak: ``excess`` has fallen there since a step earlier,
+    within which the scale is one.
     """
     rows, columns, bins = excess.shape
     for row in range(rows):
@@ -134,7 +143,7 @@ def last_peaks(
                 if bin_ < place * step:
                     place -= 1
                 above, wanted = excess[row, column, bin_], threshold[row, column, place]
-                if best != NONE and above < 0.5 * wanted:
+                if best != NONE and (above < 0.5 * wanted or _is_valley(above, height)):
                     break
                 strong = above >= wanted and above > height
                 if strong and own[row, column, bin_] >= least[row, column, place]:
