@@ -56,23 +56,27 @@ def test_pixels_at_the_edge_are_less_certain():
 
 
 def test_choosing_and_sharing_out_lower_the_error(monkeypatch):
-    """Coastal water, 10 m: either lowers the error a pixel, and both do more than one.
+    """Coastal water, 10 m: the bottom's error, both more than one; the column's stays as it is.
 
-    Root mean square over a small frame; 60 flashes tell the ratio of two to 1 %.
+    Root mean square over the pixels of a small frame; 60 flashes tell the ratio of two to 1 %.
+    Found for the bottom: 5.6 % with neither, 5.0 % with the choice, 4.8 % with both; for the column
+    6.4 % with and without. Were it lit by the tracks chosen for the bottom, the outermost pixels
+    would err by 8 instead of 5 %.
     """
     engine = make_engine(water="coastal", depth=10.0, shape=(16, 32), walks_per_pixel=32)
     evenly, nowhere = np.ones(16 * 32), np.zeros(16 * 32, np.bool_)
 
-    def error(told):
+    def errors(told):
         monkeypatch.setattr(engine_module, "deviations", lambda *a: told(*deviations(*a)))
         flashes = [engine.flash(pose=level_pose(), frame=frame) for frame in range(60)]
-        light = np.array([flash.origin("bottom").sum(axis=-1) for flash in flashes], np.float64)
-        return np.sqrt((light.var(axis=0, ddof=1) / light.mean(axis=0) ** 2).mean())
+        light = np.array([f.photo_electrons[1:].sum(axis=-1) for f in flashes], np.float64)
+        return np.sqrt((light.var(axis=0, ddof=1) / light.mean(axis=0) ** 2).mean(axis=(1, 2)))
 
-    both = error(lambda deviation, rims: (deviation, rims))
-    neither = error(lambda *_: (evenly, nowhere))
-    assert both < 0.97 * neither
-    assert both < error(lambda _, rims: (evenly, rims)) < neither
+    column, bottom = errors(lambda deviation, rims: (deviation, rims))
+    column_before, bottom_before = errors(lambda *_: (evenly, nowhere))
+    assert bottom < 0.9 * bottom_before
+    assert bottom < errors(lambda _, rims: (evenly, rims))[1] < bottom_before
+    assert column < 1.04 * column_before
 
 
 @pytest.mark.parametrize("waves", [False, True])
