@@ -58,7 +58,7 @@ CASES = {
         water="coastal", depth_m=10.0, walks_per_pixel=144, surface=WIND_WAVES
     ),
     "coastal 20 m": Case(water="coastal", depth_m=20.0, walks_per_pixel=80, column_spacing=2.5),
-    "harbor 4 m": Case(water="harbor", depth_m=4.0, walks_per_pixel=104),
+    "harbor 4 m": Case(water="harbor", depth_m=4.0, walks_per_pixel=88),
 }
 
 
