@@ -52,13 +52,13 @@ WIND_WAVES = {
     "waves": {"spectrum": "jonswap", "fetch_km": 20.0},
 }
 CASES = {
-    "clear 20 m": Case(water="clear", depth_m=20.0, walks_per_pixel=40),
-    "coastal 10 m": Case(water="coastal", depth_m=10.0, walks_per_pixel=40),
+    "clear 20 m": Case(water="clear", depth_m=20.0, walks_per_pixel=36),
+    "coastal 10 m": Case(water="coastal", depth_m=10.0, walks_per_pixel=36),
     "coastal 10 m, waves": Case(
-        water="coastal", depth_m=10.0, walks_per_pixel=48, surface=WIND_WAVES
+        water="coastal", depth_m=10.0, walks_per_pixel=144, surface=WIND_WAVES
     ),
-    "coastal 20 m": Case(water="coastal", depth_m=20.0, walks_per_pixel=104, column_spacing=2.5),
-    "harbor 4 m": Case(water="harbor", depth_m=4.0, walks_per_pixel=104),
+    "coastal 20 m": Case(water="coastal", depth_m=20.0, walks_per_pixel=80, column_spacing=2.5),
+    "harbor 4 m": Case(water="harbor", depth_m=4.0, walks_per_pixel=88),
 }
 
 

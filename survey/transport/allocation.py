@@ -1,8 +1,9 @@
 """How many light paths each pixel gets: more where fewer of them come from lit water.
 
 At the edge of the lit area the light of a pixel comes from one side alone: half of its paths begin
-in the dark, and the others tell its brightness with less certainty. An equal error in all pixels
-costs least when paths are shared out by the standard deviation of one.
+in the dark, and the others tell its brightness with less certainty. The mean square error over all
+pixels is least when paths are shared out by the standard deviation of one (Neyman 1934): that of
+the edge stays above that of the others by the root of how many times as many paths it has.
 """
 
 from __future__ import annotations
@@ -23,6 +24,17 @@ FloatArray = NDArray[np.float64]
 PILOTS = 64
 SPREAD = 0.1
 """Relative variance of the light of one path that begins in lit water, as measured [1]."""
+LEFT = 0.6
+"""Share of the variance by beginnings in the dark that the choice of azimuths leaves [1].
+
+Measured, of 24 flashes of pixels at the rim with the choice and without: 0.59 in clear water 20 m
+deep, 0.62 in coastal water 10 m deep. Shared out by 0.3 all pixels err the same within 1 %.
+"""
+RIM = 0.9
+"""A pixel is at the rim where fewer of its paths begin in lit water [1].
+
+Where nearly all do, choosing helps the bottom no more than the numbers tell and harms the column.
+"""
 
 
 def strays(tracks: Tracks) -> FloatArray:
@@ -35,19 +47,32 @@ def strays(tracks: Tracks) -> FloatArray:
     pilots = np.arange(PILOTS)
     down = (2 * pilots + 1) * tracks.reached[0] // (2 * PILOTS)
     back = (2 * (pilots * 19 % PILOTS) + 1) * tracks.reached[1] // (2 * PILOTS)
-    return np.asarray(tracks.aside[0, down] + tracks.aside[1, back])
+    to_left = pilots * 2.0 * np.pi / PILOTS
+    return turned_by(tracks.aside[0, down], 7 * to_left) + turned_by(tracks.aside[1, back], to_left)
+
+
+def turned_by(aside: FloatArray, azimuth: FloatArray) -> FloatArray:
+    """Return vectors (n, 2), each turned by an azimuth [rad]."""
+    c, s = np.cos(azimuth), np.sin(azimuth)
+    return np.column_stack([c * aside[:, 0] - s * aside[:, 1], s * aside[:, 0] + c * aside[:, 1]])
 
 
 @kernel
-def deviations(scene: Scene, optics: Optics, strayed: FloatArray, isolated: bool) -> FloatArray:
+def deviations(
+    scene: Scene, optics: Optics, strayed: FloatArray, isolated: bool
+) -> tuple[FloatArray, NDArray[np.bool_]]:
     """Return the relative standard deviation of one light path in every pixel (pixels,).
 
+    And whether it is at the rim, where more than a few begin in the dark.
+
     Of the paths that begin where the pixel's ray enters the water and stray a share p begins in
-    lit water: the variance is (1 - p) / p and that of lit paths. Departure: rays and strays are
-    taken as on level ground of the mean depth, strays as if light came down vertically.
+    lit water: the variance is a share `LEFT` of (1 - p) / p, and that of lit paths. Departure: rays
+    and strays are taken as on level ground of the mean depth, strays as if light came down
+    vertically.
     """
     level, height = scene.sea.level, optics.position[2] - scene.sea.level
     result = np.empty(optics.rows * optics.columns)
+    rims = np.empty(len(result), np.bool_)
     for pixel in range(len(result)):
         row, column = pixel // optics.columns, pixel % optics.columns
         forward, right = tangents_at(
@@ -62,8 +87,9 @@ def deviations(scene: Scene, optics: Optics, strayed: FloatArray, isolated: bool
                 east, north = x + strayed[i, 0], y + strayed[i, 1]
                 lit += light_on_water(optics, level, east, north, pixel, isolated) > 0.0
         share = max(lit, 1) / len(strayed)
-        result[pixel] = math.sqrt((1.0 - share) / share + SPREAD)
-    return result
+        rims[pixel] = share < RIM
+        result[pixel] = math.sqrt(LEFT * (1.0 - share) / share + SPREAD)
+    return result, rims
 
 
 def walks_of_pixels(deviation: FloatArray, *, mean: int) -> NDArray[np.int64]:

@@ -140,7 +140,7 @@ class Engine:
             self._layers, 2 * settings.replicates, settings.tracks_per_replicate,
             FEWEST_LEGS + int(min(MOST_LEGS, scatterings)), scene.bounds.depth, *address,
         )  # fmt: skip
-        deviation = deviations(scene, optics, strays(tracks), self._method.isolated)
+        deviation, rims = deviations(scene, optics, strays(tracks), self._method.isolated)
         walks = walks_of_pixels(deviation, mean=settings.walks_per_replicate)
         pixels, tally = len(walks), self._tally()
         mean = np.empty((3, pixels, self.receiver.bins), np.float32)
@@ -149,7 +149,7 @@ class Engine:
         mean[0] = self._surface_echo(scene, optics)
         see_all(
             scene, self._layers, optics, self._method, tracks, tally, address,
-            walks, np.empty(2, np.uint64), mean[1:], variance[1:],
+            walks, rims, np.empty(2, np.uint64), mean[1:], variance[1:],
         )  # fmt: skip
         launched = settings.replicates * walks.sum()
         grid = (3, optics.rows, optics.columns, self.receiver.bins)

@@ -19,19 +19,19 @@ from numpy.typing import NDArray
 from scipy.constants import speed_of_light
 
 from survey.optics.interface import fresnel_reflectance, reflected
+from survey.transport.aim import aimed
 from survey.transport.beam import Ray, ray_to
 from survey.transport.column import FLATTEST, light_column
 from survey.transport.launch import Optics
 from survey.transport.layers import Layers, crossed, free_path, wide_turn
 from survey.transport.light_sent import GAP, Facet, Method, Sight, is_open, light_sent, longest_path
 from survey.transport.random import uniform
-from survey.transport.scene import FOLLOWED, Scene
+from survey.transport.scene import Scene
 from survey.transport.surface import (
     drawn_normal,
     enter_water,
     facing_from_below,
     passing,
-    slope_density,
     tilted,
 )
 from survey.transport.tally import BOTTOM, Tally, deposit, note_leg
@@ -43,7 +43,6 @@ from survey.transport.tracks import (
     mirrored,
 )
 from terrain.kernels import inlined_kernel
-from terrain.waves.lattice import elevation_and_slopes
 
 CHANCE_BEYOND = 0.25
 ROULETTE_BELOW, ROULETTE_SURVIVAL = 1e-4, 0.1
@@ -130,13 +129,15 @@ def send_light(
     sight: Sight,
     place: Place,
     way: Course,
+    turn: float,
     weight: float,
     with_column: bool,
     state: NDArray[np.uint64],
 ) -> None:
     """Send a track down from the surface, and light the place of the bottom and the column.
 
-    A place with gain 0 is no bottom: light is then sent towards it for the column alone.
+    It is laid with the azimuth ``turn``, where another is not more likely to bring light. A place
+    with gain 0 counts as no bottom: light is sent towards it for the column alone.
     """
     sea = scene.sea
     target = sea.level - place.z
@@ -144,13 +145,16 @@ def send_light(
     dx, dy = ray.x - optics.position[0], ray.y - optics.position[1]
     dz = sea.level - optics.position[2]
     norm = 1.0 / math.sqrt(dx * dx + dy * dy + dz * dz)
-    mx, my, mz = drawn_normal(scene.drawn, method.quantiles, state)
     facet = Facet(0.0, 0.0, 1.0)
-    if scene.wavy:
-        _, wave_x, wave_y = elevation_and_slopes(scene.waves, ray.x, ray.y)
-        density = slope_density(scene.drawn, -mx / mz, -my / mz)
-        mx, my, mz = tilted(mx, my, mz, FOLLOWED * wave_x, FOLLOWED * wave_y)
-        facet = Facet(-mx / mz, -my / mz, density)
+    if scene.wavy or (sight.rim and place.gain > 0.0):
+        turn, facet, odds = aimed(
+            scene, layers, optics, method, tracks, sight, ray, target, -dz * norm, way, turn,
+            state,
+        )  # fmt: skip
+        weight *= odds
+        mx, my, mz = tilted(0.0, 0.0, 1.0, facet.slope_x, facet.slope_y)
+    else:
+        mx, my, mz = drawn_normal(sea, method.quantiles, state)
     dx, dy, dz, caught, reflectance = enter_water(
         layers.refractive_index, dx * norm, dy * norm, dz * norm, mx, my, mz
     )
@@ -159,7 +163,7 @@ def send_light(
     strength = weight * caught * (1.0 - reflectance) * passing(sea)
     start = uniform(state)
     legs = follow(
-        scene, layers, optics, method, tracks, tally, sight, place, ray, facet, way, strength,
+        scene, layers, optics, method, tracks, tally, sight, place, ray, facet, way, turn, strength,
         dx, dy, dz, state,
     )  # fmt: skip
     if with_column:
@@ -179,6 +183,7 @@ def follow(
     ray: Ray,
     facet: Facet,
     way: Course,
+    turn: float,
     strength: float,
     dx: float,
     dy: float,
@@ -191,7 +196,7 @@ def follow(
     """
     sea = scene.sea
     target = sea.level - place.z
-    frame = frame_around(dx, dy, dz, method.circle, state)
+    frame = frame_around(dx, dy, dz, method.circle, turn)
     which, k, turning, legs = 2 * sight.batch, 0, False, 0
     x = y = depth = path = absorbed = scattered = deepest = turns = 0.0
     limit = longest_path(scene, layers, optics, sight)
@@ -241,7 +246,7 @@ def follow(
             return legs
         if surfaced:
             depth = 0.0
-            mx, my, mz = drawn_normal(scene.drawn, method.quantiles, state)
+            mx, my, mz = drawn_normal(sea, method.quantiles, state)
             mx, my, mz = facing_from_below(dx, dy, dz, mx, my, mz, 0.0, 0.0)
             cosine = dx * mx + dy * my + dz * mz
             if uniform(state) >= fresnel_reflectance(cosine, layers.refractive_index):
@@ -257,6 +262,6 @@ def follow(
                 if uniform(state) >= ROULETTE_SURVIVAL:
                     return legs
                 strength /= ROULETTE_SURVIVAL
-            frame = frame_around(dx, dy, dz, method.circle, state)
+            frame = frame_around(dx, dy, dz, method.circle, uniform(state))
             track, k = int(uniform(state) * tracks.legs.shape[1]), 1
         turning, optical = True, tracks.legs[which, track, k, 3]

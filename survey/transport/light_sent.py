@@ -44,13 +44,15 @@ class Method(NamedTuple):
 class Sight(NamedTuple):
     """A walk from a pixel as it enters the water.
 
-    ``importance`` is its share of the pixel's etendue behind the surface [m2 sr].
+    ``importance`` is its share of the pixel's etendue behind the surface [m2 sr]; light to a pixel
+    at the ``rim`` of what is lit may begin in the dark.
     """
 
     pixel: int
     batch: int
     time: float
     importance: float
+    rim: bool
 
 
 class Facet(NamedTuple):

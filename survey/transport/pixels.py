@@ -23,7 +23,7 @@ from survey.transport.light_paths import (
 from survey.transport.light_sent import Method, Sight, longest_path
 from survey.transport.random import PIXELS, start_stream, uniform
 from survey.transport.scene import Scene
-from survey.transport.sheet import first_water, sea_under, water_above
+from survey.transport.sheet import BELOW, first_water, sea_under, water_above
 from survey.transport.surface import (
     drawn_normal,
     enter_water,
@@ -47,6 +47,8 @@ from terrain.raycast import first_hit
 # Roberts (2018): additive recurrences of low discrepancy in one and two dimensions.
 GOLDEN = 0.6180339887498949
 PLASTIC_1, PLASTIC_2 = 0.7548776662466927, 0.5698402909980532
+# Azimuths: of those tried, the two that fill squares with the others most evenly.
+TURNING_1, TURNING_2 = 0.6884467305709401, 0.8211030883946387
 BOUNCE_CHANCE = 0.25
 LIFT = 1e-7
 
@@ -91,6 +93,21 @@ class Address(NamedTuple):
     frame: int
 
 
+class Evenly(NamedTuple):
+    """Numbers from 0 to 1, each spread evenly over the walks of a pixel.
+
+    Where in the field of view a walk looks, the places of its two tracks in their sets, and the
+    azimuths by which these are turned.
+    """
+
+    in_rows: float
+    in_columns: float
+    back: float
+    down: float
+    turn_back: float
+    turn_down: float
+
+
 @leaf_kernel
 def facing_normal(
     scene: Scene, face: int, dx: float, dy: float, dz: float
@@ -112,6 +129,7 @@ def walk_back(
     tally: Tally,
     which: int,
     way: Course,
+    turn: float,
     start: Touch,
     limit: float,
     noting: bool,
@@ -120,10 +138,11 @@ def walk_back(
     """Follow a walk along tracks until it touches the bottom, escapes, leaves or is too late.
 
     The weight does not hold the absorption, which is told beside. Legs are noted if ``noting``.
+    The first track is laid with the azimuth ``turn``.
     """
     ledger, sea = tally.ledger, scene.sea
     _, x, y, z, dx, dy, dz, path, absorbed, weight, unabsorbed = start
-    frame = frame_around(dx, dy, dz, method.circle, state)
+    frame = frame_around(dx, dy, dz, method.circle, turn)
     k, turning, fate, entered = 0, False, LATE, weight
     turns = scattered = 0.0
     track, optical = way.track, way.optical
@@ -191,7 +210,7 @@ def walk_back(
                 weight /= ROULETTE_SURVIVAL
                 unabsorbed = kept / ROULETTE_SURVIVAL
                 ledger[ROULETTE] += kept - unabsorbed
-            frame = frame_around(dx, dy, dz, method.circle, state)
+            frame = frame_around(dx, dy, dz, method.circle, uniform(state))
             track, k = int(uniform(state) * tracks.legs.shape[1]), 1
         turning, optical = True, tracks.legs[which, track, k, 3]
     kept = weight * math.exp(-absorbed)
@@ -225,17 +244,22 @@ def see_bottom(
     tally: Tally,
     sight: Sight,
     start: Touch,
-    back: Course,
-    down: Course,
+    evenly: Evenly,
     state: NDArray[np.uint64],
 ) -> None:
-    """Walk back from under the surface, from touch to touch of the bottom, and light it all."""
+    """Walk back from under the surface, from touch to touch of the bottom, and light it all.
+
+    At the rim of what is lit, on a level sea, the column has a track of its own: one chosen to
+    light the bottom is no guide to light that begins elsewhere.
+    """
     limit = longest_path(scene, layers, optics, sight)
     tally.noted[0], entered, which = 0, start.weight, 2 * sight.batch
+    back, down = chosen(tracks, which + 1, evenly.back), chosen(tracks, which, evenly.down)
+    turn_back, turn_down = evenly.turn_back, evenly.turn_down
     entry_weight, touches = back.weight, 0
     while True:
         touch = walk_back(
-            scene, layers, method, tracks, tally, which + 1, back, start, limit,
+            scene, layers, method, tracks, tally, which + 1, back, turn_back, start, limit,
             touches == 0, state,
         )  # fmt: skip
         nx, ny, nz, rho = 0.0, 0.0, 1.0, 0.0
@@ -247,11 +271,14 @@ def see_bottom(
         elif touches > 0:
             return
         gain = sight.importance * touch.weight / entered * rho / math.pi
-        send_light(
-            scene, layers, optics, method, tracks, tally, sight,
-            Place(x, y, z, nx, ny, nz, touch.path, touch.absorbed, gain),
-            down, entry_weight * down.weight, touches == 0, state,
-        )  # fmt: skip
+        apart = touches == 0 and gain > 0.0 and sight.rim and not scene.wavy
+        for part in range(2 if apart else 1):
+            send_light(
+                scene, layers, optics, method, tracks, tally, sight,
+                Place(x, y, z, nx, ny, nz, touch.path, touch.absorbed, gain if part == 0 else 0.0),
+                down, turn_down, entry_weight * down.weight,
+                touches == 0 and part == (1 if apart else 0), state,
+            )  # fmt: skip
         if touch.face < 0:
             return
         touches += 1
@@ -269,6 +296,7 @@ def see_bottom(
         )  # fmt: skip
         back = course(tracks, which + 1, int(uniform(state) * tracks.legs.shape[1]), 1.0)
         down = chosen(tracks, which, uniform(state))
+        turn_back, turn_down = uniform(state), uniform(state)
 
 
 @inlined_kernel
@@ -282,19 +310,15 @@ def see(
     pixel: int,
     batch: int,
     walks: int,
-    in_rows: float,
-    in_columns: float,
-    back: float,
-    down: float,
+    rim: bool,
+    evenly: Evenly,
     state: NDArray[np.uint64],
 ) -> None:
     """Send one of many walks from a pixel, through the aperture and the air, to land or into water.
 
-    ``in_rows`` and ``in_columns`` say where in the field of view it looks, from 0 to 1. The etendue
-    of a direction is aperture area x cos^4 (to boresight) x tangent-plane area.
+    The etendue of a direction is aperture area x cos^4 (to boresight) x tangent-plane area.
     """
-    way_back, way_down = chosen(tracks, 2 * batch + 1, back), chosen(tracks, 2 * batch, down)
-    forward, right = tangents_at(optics, in_rows, in_columns)
+    forward, right = tangents_at(optics, evenly.in_rows, evenly.in_columns)
     dx, dy, dz, cosine = direction_of(optics, forward, right)
     ahead = aside = 1.0
     while ahead * ahead + aside * aside >= 1.0:
@@ -317,7 +341,7 @@ def see(
         to_land, face = first_hit(scene.grid, x, y, z, dx, dy, dz, length)
     if face >= 0:
         x, y, z = x + dx * to_land, y + dy * to_land, z + dz * to_land
-        sight = Sight(pixel, batch, 0.0, importance)
+        sight = Sight(pixel, batch, 0.0, importance, rim)
         touch = Touch(face, x, y, z, dx, dy, dz, to_land, 0.0, 1.0, 1.0)
         see_land(scene, optics, method, tally, sight, touch)
         ledger[REFLECTED] += 1.0
@@ -329,7 +353,7 @@ def see(
     mx, my, mz = drawn_normal(scene.sea, method.quantiles, state)
     onto = 1.0
     if scene.wavy:
-        level = sea_under(scene, x, y)
+        level = z + dz * length - BELOW
         onto = -dz / (dx * slope_x + dy * slope_y - dz)
         mx, my, mz = tilted(mx, my, mz, slope_x, slope_y)
     dx, dy, dz, caught, reflectance = enter_water(layers.refractive_index, dx, dy, dz, mx, my, mz)
@@ -340,11 +364,10 @@ def see(
     if weight <= 0.0 or dz >= 0.0:
         ledger[ESCAPED] += weight
         return
-    sight = Sight(pixel, batch, length / speed_of_light, importance * weight * gain_of(layers))
+    importance *= weight * gain_of(layers)
+    sight = Sight(pixel, batch, length / speed_of_light, importance, rim)
     start = Touch(-1, x, y, level, dx, dy, dz, 0.0, 0.0, weight, weight)
-    see_bottom(
-        scene, layers, optics, method, tracks, tally, sight, start, way_back, way_down, state
-    )
+    see_bottom(scene, layers, optics, method, tracks, tally, sight, start, evenly, state)
 
 
 @leaf_kernel
@@ -363,13 +386,14 @@ def see_all(
     tally: Tally,
     address: Address,
     walks: NDArray[np.int64],
+    rims: NDArray[np.bool_],
     state: NDArray[np.uint64],
     mean: NDArray[np.float32],
     variance: NDArray[np.float32],
 ) -> None:
     """Fill ``mean`` and ``variance`` (2, pixels, bins) with column and bottom.
 
-    ``walks`` (pixels,) are those of a replicate.
+    ``walks`` (pixels,) are those of a replicate; ``rims`` tells where many begin in the dark.
     """
     for pixel in range(mean.shape[1]):
         clear(tally)
@@ -378,14 +402,19 @@ def see_all(
             start_stream(state, address.seed, PIXELS, address.frame, batch, pixel)
             shift_1, shift_2 = uniform(state), uniform(state)
             shift_3, shift_4 = uniform(state), uniform(state)
+            shift_5, shift_6 = uniform(state), uniform(state)
             for i in range(walks[pixel]):
-                see(
-                    scene, layers, optics, method, tracks, tally, pixel, batch, walks[pixel],
+                evenly = Evenly(
                     (row + fraction(shift_1 + i * PLASTIC_1)) / optics.rows,
                     (column + fraction(shift_2 + i * PLASTIC_2)) / optics.columns,
                     fraction(shift_3 + i / walks[pixel]),
                     fraction(shift_4 + i * GOLDEN),
-                    state,
+                    fraction(shift_5 + i * TURNING_1),
+                    fraction(shift_6 + i * TURNING_2),
+                )
+                see(
+                    scene, layers, optics, method, tracks, tally, pixel, batch, walks[pixel],
+                    rims[pixel], evenly, state,
                 )  # fmt: skip
         for origin in range(2):
             add_up(tally, origin, mean[origin, pixel])

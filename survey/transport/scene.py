@@ -16,8 +16,8 @@ from terrain.waves.lattice import WaveLattice
 FloatArray = NDArray[np.float64]
 
 LEAST_DEVIATION = 0.01
-FOLLOWED, UNFOLLOWED = 0.7, 0.55
-"""Share of a wave's slope that drawn facets follow, and of its variance that they spread by."""
+WIDER = 1.5
+"""Variance of the facets that are tried on waves over that of all slopes of the sea [1]."""
 
 
 class Medium(NamedTuple):
@@ -59,7 +59,7 @@ class Scene(NamedTuple):
     """Everything that stands still during one flash.
 
     The facets of ``sea`` stand on ``waves``: a level sheet, and not ``wavy``, where none are
-    resolved. ``drawn`` has the facets that tracks of light are laid through: `drawn_sea`.
+    resolved. ``drawn`` has the facets that tracks of light are tried through: `drawn_sea`.
     """
 
     sea: Sea
@@ -119,17 +119,18 @@ def facet_sea(surface: SeaSurface) -> Sea:
 
 
 def drawn_sea(surface: SeaSurface) -> Sea:
-    """Return the facets that tracks of light are laid through, about `FOLLOWED` of the wave there.
+    """Return the facets that tracks of light are tried through on waves, wherever they enter.
 
-    Their slopes spread wider than the facets', since the track will enter elsewhere on the wave.
+    Their slopes spread wider than those of waves and facets together, so that no facet is much more
+    likely at a place than it is tried there.
     """
     if surface.waves is None:
         return kernel_sea(surface)
     facets = facet_sea(surface)
     along, across = surface.along_and_across(surface.waves.slope_covariance)
     return facets._replace(
-        upwind_deviation=(facets.upwind_deviation**2 + UNFOLLOWED * along) ** 0.5,
-        crosswind_deviation=(facets.crosswind_deviation**2 + UNFOLLOWED * across) ** 0.5,
+        upwind_deviation=(WIDER * (facets.upwind_deviation**2 + along)) ** 0.5,
+        crosswind_deviation=(WIDER * (facets.crosswind_deviation**2 + across)) ** 0.5,
     )
 
 

@@ -39,7 +39,8 @@ class Tracks(NamedTuple):
     the leg, and the turn's azimuth [rad]. Tracks of a set stand in the order of their paths to a
     certain depth, so that numbers spread evenly over a set choose fast and late light evenly;
     ``reached`` (sets,) of them get there within their legs. ``aside`` (sets, tracks, 2) is how far
-    sideways they are there, or where their legs end [m].
+    sideways they are there, or where their legs end [m]: along the first axis, but for tracks whose
+    turns are looked up, which cannot be turned as one.
     """
 
     legs: NDArray[np.float32]
@@ -141,7 +142,22 @@ def draw_tracks(
         reached[i] = np.isfinite(path).sum()
         for j in range(tracks):
             result[i, j], aside[i, j] = unordered[order[j]], strayed[order[j]]
+            if not several:
+                turn_aside(result[i, j], aside[i, j])
     return Tracks(result, aside, reached)
+
+
+@leaf_kernel
+def turn_aside(legs: NDArray[np.float32], aside: NDArray[np.float64]) -> None:
+    """Turn a track about its first leg until it strays along the first axis."""
+    away = math.sqrt(aside[0] * aside[0] + aside[1] * aside[1])
+    if away == 0.0:
+        return
+    c, s = aside[0] / away, aside[1] / away
+    for k in range(legs.shape[0]):
+        a, b = legs[k, 0], legs[k, 1]
+        legs[k, 0], legs[k, 1] = c * a - s * b, s * a + c * b
+    aside[0], aside[1] = away, 0.0
 
 
 @leaf_kernel
@@ -168,10 +184,10 @@ def chosen(tracks: Tracks, which: int, place: float) -> Course:
 
 @leaf_kernel
 def frame_around(
-    dx: float, dy: float, dz: float, circle: NDArray[np.float64], state: NDArray[np.uint64]
+    dx: float, dy: float, dz: float, circle: NDArray[np.float64], turn: float
 ) -> Frame:
-    """Axes with d as the third, turned about it by an azimuth of ``circle``."""
-    i = int(uniform(state) * circle.shape[0])
+    """Axes with d as the third, turned about it by the azimuth at a part ``turn`` of ``circle``."""
+    i = int(turn * circle.shape[0])
     c, s = circle[i, 0], circle[i, 1]
     sign = 1.0 if dz >= 0.0 else -1.0
     shear = -1.0 / (sign + dz)
@@ -183,6 +199,23 @@ def frame_around(
         c * bx - s * ax, c * by - s * ay, c * bz - s * az,
         dx, dy, dz,
     )  # fmt: skip
+
+
+@inlined_kernel
+def aside_of(
+    layers: Layers,
+    tracks: Tracks,
+    which: int,
+    way: Course,
+    circle: NDArray[np.float64],
+    turn: float,
+) -> tuple[float, float]:
+    """How far a track strays to east and north, laid straight down with an azimuth [m]."""
+    aside = tracks.aside[which, way.track]
+    if layers.samplers.shape[0] > 1:
+        return aside[0], aside[1]
+    i = int(turn * circle.shape[0])
+    return circle[i, 0] * aside[0], -circle[i, 1] * aside[0]
 
 
 @leaf_kernel
