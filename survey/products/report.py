@@ -100,6 +100,7 @@ def write_report(
             *(f"<p>{escape(text)}</p>" for text in description.split("\n\n") if text.strip()),
             "<p>Every point of this survey is simulated.</p>",
             *("<h2>Key figures</h2>", _table(metrics)),
+            *_set_aside(metrics.get("frames_set_aside", [])),
             *verdict,
             "<h2>Depth</h2>",
             f"<p>Median of the points in cells of {grid.cells.cell_size:g} m, "
@@ -138,6 +139,19 @@ def _missed(metrics: Mapping[str, Any]) -> str:
         return "No wet pixel missed the bottom."
     causes = ", ".join(f"{cause.replace('_', ' ')} {count}" for cause, count in missed.items())
     return f"Of {metrics['pixels_wet']} wet pixels {sum(missed.values())} missed it: {causes}."
+
+
+def _set_aside(frames: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return which frames are missing because they could not be flown, if there are any."""
+    if not frames:
+        return []
+    rows = [f"<tr><td>{row['frame']}</td><td>{escape(row['reason'])}</td></tr>" for row in frames]
+    return [
+        "<h2>Frames set aside</h2>",
+        "<p>These failed three times and are missing from all that follows. "
+        "The same command tries them again.</p>",
+        f"<table>\n{''.join(rows)}\n</table>",
+    ]
 
 
 def _errors(errors: ErrorTally) -> list[str]:

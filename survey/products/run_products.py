@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from datetime import datetime
@@ -119,6 +119,7 @@ def write_products(
     frames: Sequence[Frame],
     seabed: Seabed,
     settings: ProductSettings,
+    set_aside: Mapping[int, str] | None = None,
     watch: Watcher | None = None,
 ) -> dict[str, Any]:
     """Stitch the frames, write every product into the run folder, and return the metrics.
@@ -142,6 +143,8 @@ def write_products(
     seabed : Seabed
         The true one.
     settings : ProductSettings
+    set_aside : mapping, optional
+        Why frames are missing that could not be flown, by their number.
     watch : Watcher, optional
         Is told of the progress.
 
@@ -199,6 +202,9 @@ def write_products(
         pixels=look.pixels, elevation_at=seabed.elevation_at, water=settings.water
     )
     found["strip_adjustment"] = settings.strip_adjustment
+    found["frames_set_aside"] = [
+        {"frame": index, "reason": reason} for index, reason in sorted((set_aside or {}).items())
+    ]
     found["overlaps"] = overlap_metrics(overlaps.overlaps())
     found |= uncertainty.metrics()
     found["substrates"] = substrates.metrics(seabed.substrate_names)

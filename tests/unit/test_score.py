@@ -21,7 +21,7 @@ from survey.cloud.points import Outcome, PixelRecord, PointClass, PointCloud
 from survey.cloud.truth import true_targets
 from survey.flight.pose import Frame
 from survey.preparation import product_settings
-from survey.products.frame_file import FrameResult
+from survey.products.frame_file import FrameResult, frame_bytes
 from survey.products.las_file import write_laz
 from survey.products.ply_file import read_ply
 from survey.products.run_products import write_products
@@ -63,7 +63,8 @@ def run(tmp_path_factory: pytest.TempPathFactory, small_survey: Any) -> Path:
     seabed, flashes = components.seabed(scenario), components.frames(scenario)
     kept = RunFolder.open(folder / "run", scenario)
     for frame in flashes:
-        kept.keep(frame.index, seen(small_survey.bottom, scenario, seabed, frame))
+        flash = seen(small_survey.bottom, scenario, seabed, frame)
+        kept.keep(frame.index, frame_bytes(flash))
     write_products(
         kept.path,
         read=kept.frame,
