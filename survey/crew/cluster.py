@@ -6,14 +6,11 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import Any, ClassVar
 
 from survey.crew.outcome import Outcome, Result, Work
 from survey.crew.pool import through
 from survey.errors import UserError
-
-if TYPE_CHECKING:
-    from distributed import Client
 
 AHEAD = 512
 PATIENCE = "20s"
@@ -30,7 +27,7 @@ class Cluster:
     Dask may fly a frame twice, or again elsewhere when a worker is lost.
     """
 
-    client: Client
+    client: Any
     shares_memory: ClassVar[bool] = False
 
     @property

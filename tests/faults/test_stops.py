@@ -13,7 +13,7 @@ import pytest
 from survey.crew.processes import Processes
 from tests.faults.rehearsal import Rehearsal, Seam, kill
 
-KILLS, FEW_KILLS, STRIDE = 100, 4, 17
+KILLS, FEW_KILLS, STRIDE = 100, 2, 41
 
 
 def moments(rehearsal: Rehearsal, folder: Path) -> int:

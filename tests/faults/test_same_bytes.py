@@ -1,0 +1,130 @@
+"""The products of a mission are the same bytes, whoever flew it and in whatever order."""
+
+from __future__ import annotations
+
+import random
+import signal
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import ExitStack, closing, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar
+
+import pytest
+
+from survey.crew.cluster import ClusterError, connected
+from survey.crew.outcome import Crew, Outcome, Result, Work
+from survey.crew.processes import Processes
+from survey.crew.threads import Threads
+from tests.faults.rehearsal import Rehearsal, products
+
+LOCAL = [kind(workers=workers) for kind in (Threads, Processes) for workers in (1, 2, 3)]
+
+
+@dataclass(frozen=True)
+class Shuffled:
+    """Another crew, to which the frames are given in another order."""
+
+    crew: Crew
+    shares_memory: ClassVar[bool] = True
+
+    @property
+    def described(self) -> str:
+        """Who that is."""
+        return f"{self.crew.described} shuffled"
+
+    def fly(self, work: Work[Result], frames: Iterable[int]) -> Iterator[Outcome[Result]]:
+        """Shuffle, and let the other fly."""
+        return self.crew.fly(work, random.Random(5).sample(list(frames), len(list(frames))))
+
+
+@pytest.mark.parametrize(
+    "crew", [*LOCAL, *(Shuffled(crew) for crew in LOCAL[1::2])], ids=lambda crew: crew.described
+)
+def test_the_products_do_not_depend_on_the_crew(
+    rehearsal: Rehearsal, tmp_path: Path, crew: Crew
+) -> None:
+    rehearsal.fly(tmp_path / "run", crew)
+    assert products(tmp_path / "run") == rehearsal.wanted
+
+
+def dask(*arguments: str) -> subprocess.Popen[bytes]:
+    """Start a part of a cluster on this machine."""
+    command = [sys.executable, "-m", "dask", *arguments]
+    return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+@contextmanager
+def cluster(folder: Path, *, workers: int) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
+    """Give the scheduler file and the workers of a real cluster on loopback."""
+    file = folder / "scheduler.json"
+    here = ("--host", "127.0.0.1")
+    with ExitStack() as stack:
+
+        def start(*arguments: str) -> subprocess.Popen[bytes]:
+            process = stack.enter_context(dask(*arguments))
+            stack.callback(process.kill)
+            return process
+
+        start("scheduler", *here, "--port", "0", "--no-dashboard", "--scheduler-file", str(file))
+        team = ("worker", *here, "--scheduler-file", str(file), "--nthreads", "1", "--no-nanny")
+        yield str(file), [start(*team, "--no-dashboard") for _ in range(workers)]
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(600)
+@pytest.mark.parametrize("workers", [1, 2, 3])
+def test_a_cluster_makes_the_same_products(
+    rehearsal: Rehearsal, tmp_path: Path, workers: int
+) -> None:
+    pytest.importorskip("distributed")
+    with cluster(tmp_path, workers=workers) as (file, _), connected(file) as crew:
+        crew.client.wait_for_workers(workers)
+        rehearsal.fly(tmp_path / "run", crew)
+    assert products(tmp_path / "run") == rehearsal.wanted
+
+
+@pytest.mark.timeout(300)
+def test_a_cluster_that_loses_a_worker_makes_the_same_products(
+    rehearsal: Rehearsal, tmp_path: Path
+) -> None:
+    """The worker is killed when the first frames are there, in the middle of another."""
+    pytest.importorskip("distributed")
+    with cluster(tmp_path, workers=2) as (file, team), connected(file) as crew:
+        crew.client.wait_for_workers(2)
+        rehearsal.fly(tmp_path / "run", Killing(crew, team[0]))
+        assert team[0].wait(10.0) == -signal.SIGKILL
+        assert len(crew.client.nthreads()) == 1
+    assert products(tmp_path / "run") == rehearsal.wanted
+
+
+@dataclass(frozen=True)
+class Killing:
+    """A cluster of which one worker is killed when the first frame is there."""
+
+    crew: Crew
+    victim: subprocess.Popen[bytes]
+    shares_memory: ClassVar[bool] = False
+
+    @property
+    def described(self) -> str:
+        """Who that is."""
+        return self.crew.described
+
+    def fly(self, work: Work[Result], frames: Iterable[int]) -> Iterator[Outcome[Result]]:
+        """Let the others fly, and kill."""
+        with closing(self.crew.fly(work, frames)) as outcomes:  # type: ignore[type-var]
+            for outcome in outcomes:
+                self.victim.kill()
+                yield outcome
+
+
+def test_a_place_without_a_scheduler_is_an_error_that_says_so() -> None:
+    pytest.importorskip("distributed")
+    with (
+        pytest.raises(ClusterError, match=r"127.0.0.1:9: no dask scheduler answers"),
+        connected("tcp://127.0.0.1:9"),
+    ):
+        pass
