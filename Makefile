@@ -5,14 +5,16 @@ DEMO := runs/demo
 FLY := $(BIN)/bathyflash run scenarios/measured-seabed.toml -o $(DEMO)
 OTHER_RUN := 5
 
-.PHONY: help venv libraries demo test slow bench check format
+SLOW := faults mutants physics regression scale scenarios statistics unit
+
+.PHONY: help venv libraries demo test slow bench check format $(SLOW:%=slow-%)
 
 help:
 	@echo "make venv    create .venv with all libraries"
 	@echo "make demo    fly a mission over a measured seabed and draw it: $(DEMO)/picture.png"
 	@echo "make check   format, lint, types and direction of imports"
 	@echo "make test    check, then all tests but the slow ones"
-	@echo "make slow    the slow tests"
+	@echo "make slow    the slow tests; one part alone: make slow-NAME, $(SLOW)"
 	@echo "make bench   how fast engine, kernels and products are: nothing else should run"
 	@echo "make format  bring the code into its format"
 
@@ -40,8 +42,10 @@ check: $(READY)
 test: libraries check
 	$(BIN)/python -m pytest -m "not slow"
 
-slow: libraries $(READY)
-	$(BIN)/python -m pytest -m slow
+slow: $(SLOW:%=slow-%)
+
+$(SLOW:%=slow-%): slow-%: libraries $(READY)
+	$(BIN)/python -m pytest -m slow tests/$*
 
 bench: $(READY)
 	$(BIN)/python tests/benchmarks/kernels.py

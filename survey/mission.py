@@ -201,6 +201,8 @@ def _fly_missing(
     for index in sorted(chosen & set(run.spoilt)):
         watch.noticed(f"frame {index} is flown again: {run.spoilt[index]}")
     watch.started(len(missing))
+    if missing and crew.shares_memory:
+        mission.scattering()
     with closing(patiently(crew, _work(mission, scenario, crew), missing)) as outcomes:
         for outcome in outcomes:
             if isinstance(outcome, Failed):
@@ -219,7 +221,6 @@ def _fly_missing(
 def _work(mission: Mission, scenario: Scenario, crew: Crew) -> Work[bytes]:
     """Return what a crew does for a frame: on this machine, or where it must prepare itself."""
     if crew.shares_memory:
-        mission.scattering()
         return partial(frame_file, mission)
     return FarWork.of(scenario, frame_file)
 

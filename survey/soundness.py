@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from survey.products.observation import Observation
 
@@ -20,7 +23,7 @@ def sound(seen: Observation) -> Observation:
         When light, its variance or a place is not finite: one such number would go unseen into
         medians and grids.
     """
-    numbers = {
+    numbers: dict[str, NDArray[np.floating[Any]]] = {
         "expected light": seen.waveforms.photo_electrons,
         "its variance": seen.waveforms.variance,
         "bottom points": seen.result.bottom.position,

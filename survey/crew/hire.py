@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Literal
 
@@ -14,7 +14,7 @@ from survey.crew.threads import Threads
 from survey.errors import UserError
 
 Kind = Literal["threads", "processes"]
-CREWS = {"threads": Threads, "processes": Processes}
+CREWS: Mapping[Kind, Callable[..., Crew]] = {"threads": Threads, "processes": Processes}
 
 
 def local_crew(workers: int = 0, kind: Kind = "processes") -> Crew:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Generator, Iterable
 
 from survey.crew.outcome import Crew, Done, Failed, Outcome, Result, Work
 
 TRIES = 3
 
 
-def patiently(crew: Crew, work: Work[Result], frames: Iterable[int]) -> Iterator[Outcome[Result]]:
+def patiently(
+    crew: Crew, work: Work[Result], frames: Iterable[int]
+) -> Generator[Outcome[Result], None, None]:
     """Yield every frame once: done, or failed three times.
 
     Frames that fail are flown again when all others are done, one at a time: a frame that brings

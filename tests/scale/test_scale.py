@@ -98,7 +98,8 @@ def test_time_and_memory_of_a_frame_stay_flat_and_a_resume_starts_soon(
     print(
         f"\n{FRAMES} frames of {size} bytes: {1e3 * first:.2f} ms a frame at first, "
         f"{1e3 * last:.2f} ms at last; {gauge.resident[PART] / 1e6:.0f} MB resident at frame "
-        f"{PART}, {gauge.resident[-1] / 1e6:.0f} MB at the end; a resume starts after {resume:.1f} s"
+        f"{PART}, {gauge.resident[-1] / 1e6:.0f} MB at the end; a resume starts after "
+        f"{resume:.1f} s"
     )
     assert abs(last / first - 1.0) < 0.1
     assert gauge.resident[-1] - gauge.resident[PART] < 0.02 * GIB
