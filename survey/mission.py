@@ -203,6 +203,8 @@ def _fly_missing(
     watch.started(len(missing))
     if missing and crew.shares_memory:
         mission.scattering()
+    elif missing:
+        watch.noticed(f"flown by {crew.described}")
     with closing(patiently(crew, _work(mission, scenario, crew), missing)) as outcomes:
         for outcome in outcomes:
             if isinstance(outcome, Failed):

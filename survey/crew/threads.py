@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
+from itertools import islice
 from typing import ClassVar
 
-from survey.crew.outcome import Outcome, Result, Work
-from survey.crew.pool import through
+from survey.crew.outcome import Outcome, Result, Work, attempt
+
+AHEAD = 2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,11 +28,25 @@ class Threads:
     def fly(self, work: Work[Result], frames: Iterable[int]) -> Iterator[Outcome[Result]]:
         """Yield what comes of every frame, in any order.
 
+        Frames that have not begun are taken back when the caller stops.
+
         Examples
         --------
         >>> crew = Threads(workers=2)
         >>> sorted(done.result for done in crew.fly(lambda index: index**2, range(4)))
         [0, 1, 4, 9]
         """
+        left, flying = iter(frames), set[Future[Outcome[Result]]]()
         with ThreadPoolExecutor(self.workers) as pool:
-            yield from through(pool, work, frames, ahead=2 * self.workers)
+            try:
+                while True:
+                    for index in islice(left, AHEAD * self.workers - len(flying)):
+                        flying.add(pool.submit(attempt, work, index))
+                    if not flying:
+                        return
+                    ended, flying = wait(flying, return_when=FIRST_COMPLETED)
+                    for future in ended:
+                        yield future.result()
+            finally:
+                for future in flying:
+                    future.cancel()

@@ -6,11 +6,12 @@ import random
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import pytest
 
@@ -21,6 +22,7 @@ from survey.crew.threads import Threads
 from tests.faults.rehearsal import Rehearsal, products
 
 LOCAL = [kind(workers=workers) for kind in (Threads, Processes) for workers in (1, 2, 3)]
+IN_HASTE = {"3 threads", "2 processes", "3 processes shuffled"}
 
 
 @dataclass(frozen=True)
@@ -40,9 +42,17 @@ class Shuffled:
         return self.crew.fly(work, random.Random(5).sample(list(frames), len(list(frames))))
 
 
-@pytest.mark.parametrize(
-    "crew", [*LOCAL, *(Shuffled(crew) for crew in LOCAL[1::2])], ids=lambda crew: crew.described
-)
+def local_crews() -> list[Any]:
+    """Return nine, most of them for the slow tests; a cluster of one, two, three makes twelve."""
+    crews = [*LOCAL, *(Shuffled(crew) for crew in LOCAL[1::2])]
+    marks = {True: (), False: pytest.mark.slow}
+    return [
+        pytest.param(crew, id=crew.described, marks=marks[crew.described in IN_HASTE])
+        for crew in crews
+    ]
+
+
+@pytest.mark.parametrize("crew", local_crews())
 def test_the_products_do_not_depend_on_the_crew(
     rehearsal: Rehearsal, tmp_path: Path, crew: Crew
 ) -> None:
@@ -70,7 +80,14 @@ def cluster(folder: Path, *, workers: int) -> Iterator[tuple[str, list[subproces
 
         start("scheduler", *here, "--port", "0", "--no-dashboard", "--scheduler-file", str(file))
         team = ("worker", *here, "--scheduler-file", str(file), "--nthreads", "1", "--no-nanny")
+        wait_for(file)
         yield str(file), [start(*team, "--no-dashboard") for _ in range(workers)]
+
+
+def wait_for(file: Path) -> None:
+    """Wait until a file is there."""
+    while not file.exists():
+        time.sleep(0.05)
 
 
 @pytest.mark.slow
@@ -86,7 +103,8 @@ def test_a_cluster_makes_the_same_products(
     assert products(tmp_path / "run") == rehearsal.wanted
 
 
-@pytest.mark.timeout(300)
+@pytest.mark.slow
+@pytest.mark.timeout(600)
 def test_a_cluster_that_loses_a_worker_makes_the_same_products(
     rehearsal: Rehearsal, tmp_path: Path
 ) -> None:
@@ -121,10 +139,18 @@ class Killing:
                 yield outcome
 
 
-def test_a_place_without_a_scheduler_is_an_error_that_says_so() -> None:
+def test_a_place_without_a_scheduler_is_an_error_that_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     pytest.importorskip("distributed")
+    monkeypatch.setattr("survey.crew.cluster.PATIENCE", "1s")
     with (
         pytest.raises(ClusterError, match=r"127.0.0.1:9: no dask scheduler answers"),
         connected("tcp://127.0.0.1:9"),
+    ):
+        pass
+    with (
+        pytest.raises(FileNotFoundError, match=r"no scheduler file. `dask scheduler"),
+        connected(str(tmp_path / "scheduler.json")),
     ):
         pass

@@ -174,8 +174,11 @@ def test_other_code_and_versions_are_refused(
 ) -> None:
     RunFolder.open(tmp_path / "run", scenario)
     monkeypatch.setattr(run_identity, "_code_digest", lambda: "other")
+    monkeypatch.setattr(run_identity, "_lock_digest", lambda: "other")
     monkeypatch.setattr(run_identity.metadata, "version", lambda name: "0")
-    assert "other library versions, other code" in refused(scenario, tmp_path / "run")
+    assert "other library versions, other lock of the libraries, other code" in refused(
+        scenario, tmp_path / "run"
+    )
 
 
 def test_the_keys_that_differ_are_named(scenario: Scenario, tmp_path: Path) -> None:
