@@ -20,7 +20,6 @@ Settings = Annotated[
 ]
 
 
-SCHEDULER_VARIABLE = "DASK_SCHEDULER_ADDRESS"
 LARGEST_SEED = 2**63 - 1
 
 
@@ -70,7 +69,7 @@ def run(
     cluster: Annotated[
         str | None,
         typer.Option(
-            metavar="ADDRESS|FILE", help=f"Fly on a dask cluster. [{SCHEDULER_VARIABLE} if set]"
+            metavar="ADDRESS|FILE", help="Fly on a dask cluster. [DASK_SCHEDULER_ADDRESS if set]"
         ),
     ] = None,
     frames: Annotated[

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from survey.products.verdict.words import verdict_lines
 
 
-def summary(folder: Path, metrics: Mapping[str, object]) -> str:
+def summary(folder: Path, metrics: Mapping[str, Any]) -> str:
     """Return what a run achieved in a few lines for the user."""
     return "\n".join(
         (
+            *_set_aside([frame["frame"] for frame in metrics["frames_set_aside"]]),
             f"{metrics['points_bottom']} bottom points, {metrics['points_surface']} surface points",
             f"bottom against the true seabed: bias {_metres(metrics['bias_m'])}, "
             f"95 % within {_metres(metrics['p95_abs_error_m'])}, "
@@ -23,6 +25,20 @@ def summary(folder: Path, metrics: Mapping[str, object]) -> str:
             f"written to {folder}: report.html, bottom.laz, bathymetry.tif and others",
         )
     )
+
+
+def _set_aside(frames: Sequence[int]) -> Sequence[str]:
+    """Return a line on the frames that are missing, if there are any.
+
+    Examples
+    --------
+    >>> _set_aside([7, 12])
+    ['set aside after three tries, and missing from all products: frames 7, 12']
+    """
+    if not frames:
+        return []
+    numbers = ", ".join(map(str, frames))
+    return [f"set aside after three tries, and missing from all products: frames {numbers}"]
 
 
 def _metres(value: object) -> str:

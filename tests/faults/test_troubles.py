@@ -228,8 +228,10 @@ def test_a_frame_that_always_fails_is_set_aside_and_later_flown(
     assert missing["frame"] == 2
     assert reason in missing["reason"]
     assert _metrics(run)["frames"] == 3
-    for file in ("log.txt", "report.html"):
-        assert reason in (run / file).read_text()
+    assert reason in (run / "report.html").read_text()
+    log = (run / "log.txt").read_text()
+    assert f"frame 2 is set aside, it failed three times: {missing['reason']}" in log
+    assert "missing from all products: frames 2\n" in log
     assert not (run / "frames/000002.npz").exists()
     rehearsal.must_finish_alike(run)
 
