@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Timer
 from typing import Any, ClassVar
 
 import pytest
@@ -68,7 +69,7 @@ def dask(*arguments: str) -> subprocess.Popen[bytes]:
 
 @contextmanager
 def cluster(folder: Path, *, workers: int) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
-    """Give the scheduler file and the workers of a real cluster on loopback."""
+    """Give the scheduler file of a real cluster on loopback, its scheduler and its workers."""
     file = folder / "scheduler.json"
     here = ("--host", "127.0.0.1")
     with ExitStack() as stack:
@@ -78,10 +79,11 @@ def cluster(folder: Path, *, workers: int) -> Iterator[tuple[str, list[subproces
             stack.callback(process.kill)
             return process
 
-        start("scheduler", *here, "--port", "0", "--no-dashboard", "--scheduler-file", str(file))
+        own = ("--port", "0", "--no-dashboard", "--scheduler-file", str(file))
+        scheduler = start("scheduler", *here, *own)
         team = ("worker", *here, "--scheduler-file", str(file), "--nthreads", "1", "--no-nanny")
         wait_for(file)
-        yield str(file), [start(*team, "--no-dashboard") for _ in range(workers)]
+        yield str(file), [scheduler, *(start(*team, "--no-dashboard") for _ in range(workers))]
 
 
 def wait_for(file: Path) -> None:
@@ -110,12 +112,24 @@ def test_a_cluster_that_loses_a_worker_makes_the_same_products(
 ) -> None:
     """The worker is killed when the first frames are there, in the middle of another."""
     pytest.importorskip("distributed")
-    with cluster(tmp_path, workers=2) as (file, team), connected(file) as crew:
+    with cluster(tmp_path, workers=2) as (file, (_, victim, _)), connected(file) as crew:
         crew.client.wait_for_workers(2)
-        rehearsal.fly(tmp_path / "run", Killing(crew, team[0]))
-        assert team[0].wait(10.0) == -signal.SIGKILL
+        rehearsal.fly(tmp_path / "run", Killing(crew, victim))
+        assert victim.wait(10.0) == -signal.SIGKILL
         assert len(crew.client.nthreads()) == 1
     assert products(tmp_path / "run") == rehearsal.wanted
+
+
+@pytest.mark.slow
+def test_a_cluster_that_loses_its_scheduler_ends_a_run_with_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("distributed")
+    monkeypatch.setattr("survey.crew.cluster.PATIENCE", "5s")
+    with cluster(tmp_path, workers=0) as (file, (scheduler,)), connected(file) as crew:
+        Timer(1.0, scheduler.kill).start()
+        with pytest.raises(ClusterError, match=r"is gone\. The same command goes on"):
+            list(crew.fly(abs, range(9)))
 
 
 @dataclass(frozen=True)
