@@ -5,15 +5,16 @@ DEMO := runs/demo
 FLY := $(BIN)/bathyflash run scenarios/measured-seabed.toml -o $(DEMO)
 OTHER_RUN := 5
 
-.PHONY: help venv libraries demo test slow slow-input bench check format
+SLOW := bad_input faults mutants physics regression scale scenarios statistics unit
+
+.PHONY: help venv libraries demo test slow bench check format $(SLOW:%=slow-%)
 
 help:
 	@echo "make venv    create .venv with all libraries"
 	@echo "make demo    fly a mission over a measured seabed and draw it: $(DEMO)/picture.png"
 	@echo "make check   format, lint, types and direction of imports"
 	@echo "make test    check, then all tests but the slow ones"
-	@echo "make slow    the slow tests"
-	@echo "make slow-input  2,000 damaged files and the corpus of broken ones, as users meet them"
+	@echo "make slow    the slow tests; one part alone: make slow-NAME, $(SLOW)"
 	@echo "make bench   how fast engine, kernels and products are: nothing else should run"
 	@echo "make format  bring the code into its format"
 
@@ -41,11 +42,10 @@ check: $(READY)
 test: libraries check
 	$(BIN)/python -m pytest -m "not slow" --numprocesses=auto --maxprocesses=4 --dist=loadfile
 
-slow: libraries $(READY)
-	$(BIN)/python -m pytest -m slow
+slow: $(SLOW:%=slow-%)
 
-slow-input: $(READY)
-	$(BIN)/python -m pytest -m slow tests/bad_input
+$(SLOW:%=slow-%): slow-%: libraries $(READY)
+	$(BIN)/python -m pytest -m slow tests/$*
 
 bench: $(READY)
 	$(BIN)/python tests/benchmarks/kernels.py

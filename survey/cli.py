@@ -62,6 +62,16 @@ def run(
     workers: Annotated[
         int | None, typer.Option(min=0, help="Frames at once; 0 is one for each core.")
     ] = None,
+    kind: Annotated[
+        Literal["threads", "processes"] | None,
+        typer.Option("--with", help="What the workers are. [processes]"),
+    ] = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS|FILE", help="Fly on a dask cluster. [DASK_SCHEDULER_ADDRESS if set]"
+        ),
+    ] = None,
     frames: Annotated[
         str | None, typer.Option(metavar="A:B", help="Only these frames, from 0, B excluded.")
     ] = None,
@@ -73,18 +83,26 @@ def run(
 ) -> None:
     """Fly a mission and write its run folder; go on where an earlier run of it stopped."""
     from survey.console import watching
+    from survey.crew.hire import cluster_of, hired
+    from survey.interrupt import stoppable
     from survey.scenario.components import flight_plan
     from survey.scenario.load import load_scenario, parse_frames, parse_overrides
 
+    cluster = cluster_of(cluster, workers=workers, kind=kind)
     flown = load_scenario(scenario, parse_overrides(settings or []))
     chosen = parse_frames(frames, flight_plan(flown).frame_count)
     from survey.mission import fly
 
-    with watching(sys.stdout, quiet=quiet) as watcher:
+    workers = flown.run.workers if workers is None else workers
+    with (
+        stoppable(),
+        watching(sys.stdout, quiet=quiet) as watcher,
+        hired(workers=workers, kind=kind or "processes", cluster=cluster) as crew,
+    ):
         fly(
             flown,
             output,
-            workers=flown.run.workers if workers is None else workers,
+            crew=crew,
             frames=chosen,
             refly=refly,
             watch=watcher,

@@ -9,3 +9,7 @@ class UserError(ValueError):
 
 class OtherRunError(UserError):
     """The run folder belongs to another scenario or to other code."""
+
+
+class FrameError(RuntimeError):
+    """A frame that cannot be flown."""

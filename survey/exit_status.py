@@ -10,6 +10,15 @@ from survey.errors import OtherRunError, UserError
 OUR_PACKAGES = {"survey", "terrain", "viewer"}
 DONE, BAD_INPUT, FILE_MISSING, OTHER_RUN, OUR_FAULT, INTERRUPTED = 0, 2, 3, 5, 70, 130
 TRACEBACK_VARIABLE = "BATHYFLASH_TRACEBACK"
+REMEDIES: dict[int | None, str] = {
+    errno.ENOSPC: "Free some space; the same command goes on from here.",
+    errno.EDQUOT: "Free some space; the same command goes on from here.",
+    errno.EFBIG: "Raise the limit of file sizes; the same command goes on from here.",
+    errno.EIO: "Check the disk; the same command goes on from here.",
+    errno.EMFILE: "Raise the limit with `ulimit -n`; the same command goes on from here.",
+    errno.EROFS: "Choose a place that can be written to.",
+    errno.EACCES: "Choose a place that you may use.",
+}
 
 
 def explain(error: BaseException) -> tuple[int, str]:
@@ -44,7 +53,8 @@ def _is_our_value_error(error: BaseException) -> bool:
 def _file_lines(error: OSError) -> str:
     if error.filename is None or error.strerror is None:
         return str(error)
-    return f"{error.filename}: {error.strerror.lower()}."
+    words = f"{error.filename}: {error.strerror.lower()}."
+    return f"{words} {REMEDIES[error.errno]}" if error.errno in REMEDIES else words
 
 
 def _our_fault(error: BaseException) -> str:

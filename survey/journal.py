@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from survey.products.writing import flush
+from survey.products.writing import flush, naming
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,12 +35,13 @@ class Note:
 def write_note(path: Path, note: Note) -> None:
     """Add a line to a journal and flush it to the disk; a torn last line is ended first."""
     fresh = not path.exists()
-    with path.open("ab+") as journal:
-        journal.write(_line_break_after_torn(journal) + _line(note))
-        journal.flush()
-        os.fsync(journal.fileno())
-    if fresh:
-        flush(path.parent)
+    with naming(path):
+        with path.open("ab+") as journal:
+            journal.write(_line_break_after_torn(journal) + _line(note))
+            journal.flush()
+            os.fsync(journal.fileno())
+        if fresh:
+            flush(path.parent)
 
 
 def read_notes(path: Path) -> Iterator[Note]:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import os
-import time
-from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,27 +15,32 @@ from survey.cloud.ranging import blind_at, first_echo
 from survey.cloud.record import pixel_record
 from survey.cloud.truth import true_targets
 from survey.cloud.uncertainty import Surroundings
-from survey.errors import UserError
+from survey.crew.hire import local_crew
+from survey.crew.outcome import Crew, Failed, Work
+from survey.crew.patience import patiently
+from survey.errors import FrameError, UserError
+from survey.far_work import FarWork
 from survey.flight.pose import Frame
 from survey.preparation import Mission, prepare
-from survey.products.frame_file import FrameResult
+from survey.products.frame_file import FrameResult, frame_bytes
 from survey.products.observation import Observation
 from survey.products.performance import Stopwatch, write_performance
 from survey.products.report.sample import typical_pixel
 from survey.products.run_products import write_products
-from survey.products.verdict.words import verdict_lines
 from survey.progress import Unwatched, Watcher
 from survey.run_folder import RunFolder
 from survey.run_identity import found_manifest
 from survey.run_lock import require_free, sole_pilot
 from survey.run_log import logged
+from survey.run_summary import summary
 from survey.scenario.scenario import Scenario
+from survey.soundness import sound
 from survey.transport.random import COUNTS, chance
 
 
 def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
     """Fly one flash and return what a run keeps: points, and the truth beside them."""
-    return observe(mission, frame).result
+    return sound(observe(mission, frame)).result
 
 
 def observe(mission: Mission, frame: Frame) -> Observation:
@@ -135,11 +139,15 @@ def fly(
     folder: Path,
     *,
     workers: int = 0,
+    crew: Crew | None = None,
     frames: range | None = None,
     refly: bool = False,
     watch: Watcher | None = None,
 ) -> Path:
     """Fly a mission into a run folder, and go on where an earlier run of it stopped.
+
+    A frame that fails is flown again, and after three times set aside: it is named to the watcher,
+    in metrics.json and in the report, the rest completes, and a later call tries it again.
 
     Parameters
     ----------
@@ -148,7 +156,9 @@ def fly(
     folder : Path
         Run folder: new, or of the same scenario.
     workers : int
-        Frames flown at once; 0 is one for each core. The products do not depend on it.
+        Processes of this machine; 0 is one for each core. The products do not depend on it.
+    crew : Crew, optional
+        Others than these: `survey.crew` has threads, processes and the workers of a cluster.
     frames : range, optional
         Only these frames; the products cover all frames that are then present.
     refly : bool
@@ -167,6 +177,8 @@ def fly(
         When the folder belongs to another scenario or to other code.
     BusyRunError
         At once, when another process flies into the folder.
+    FrameError
+        When every frame failed.
     ValueError
         When the flight leaves the seabed, or nothing at all was found: the text says why.
     """
@@ -174,32 +186,68 @@ def fly(
     mission = prepare(scenario)
     run = RunFolder.open(folder, scenario, refly=refly)
     with sole_pilot(folder), logged(folder, watch or Unwatched()) as told:
-        _fly_missing(mission, run, workers=workers, frames=frames, watch=told)
-        found = _write_products(mission, run, told)
+        crew = crew or local_crew(workers)
+        set_aside = _fly_missing(mission, scenario, run, crew=crew, frames=frames, watch=told)
+        found = _write_products(mission, run, set_aside, told)
         told.finished(summary(folder, found))
     return folder
 
 
 def _fly_missing(
-    mission: Mission, run: RunFolder, *, workers: int, frames: range | None, watch: Watcher
-) -> None:
-    """Fly the chosen frames that are not whole."""
-    clock = Stopwatch()
+    mission: Mission,
+    scenario: Scenario,
+    run: RunFolder,
+    *,
+    crew: Crew,
+    frames: range | None,
+    watch: Watcher,
+) -> dict[int, str]:
+    """Fly the chosen frames that are not whole, and return why some could not be flown."""
+    clock, set_aside = Stopwatch(), dict[int, str]()
     chosen = set(frames if frames is not None else range(len(mission.frames)))
-    missing = [f for f in mission.frames if f.index in chosen and f.index not in run.whole]
+    missing = [f.index for f in mission.frames if f.index in chosen and f.index not in run.whole]
     for index in sorted(chosen & set(run.spoilt)):
         watch.noticed(f"frame {index} is flown again: {run.spoilt[index]}")
     watch.started(len(missing))
-    for index, result, seconds in fly_frames(mission, missing, workers):
-        run.keep(index, result)
-        clock.add(seconds)
-        watch.frame_done(index, seconds)
+    if missing and crew.shares_memory:
+        mission.scattering()
+    elif missing:
+        watch.noticed(f"flown by {crew.described}")
+    with closing(patiently(crew, _work(mission, scenario, crew), missing)) as outcomes:
+        for outcome in outcomes:
+            if isinstance(outcome, Failed):
+                set_aside[outcome.index] = outcome.reason
+                watch.noticed(
+                    f"frame {outcome.index} is set aside, it failed three times: {outcome.reason}"
+                )
+                continue
+            run.keep(outcome.index, outcome.result)
+            clock.add(outcome.seconds)
+            watch.frame_done(outcome.index, outcome.seconds)
     write_performance(run.path / "performance.json", clock)
+    return set_aside
 
 
-def _write_products(mission: Mission, run: RunFolder, watch: Watcher) -> dict[str, Any]:
+def _work(mission: Mission, scenario: Scenario, crew: Crew) -> Work[bytes]:
+    """Return what a crew does for a frame: on this machine, or where it must prepare itself."""
+    if crew.shares_memory:
+        return partial(frame_file, mission)
+    return FarWork.of(scenario, frame_file)
+
+
+def frame_file(mission: Mission, index: int) -> bytes:
+    """Fly one flash and return the content of its file."""
+    return frame_bytes(fly_frame(mission, mission.frames[index]))
+
+
+def _write_products(
+    mission: Mission, run: RunFolder, set_aside: Mapping[int, str], watch: Watcher
+) -> dict[str, Any]:
     """Write the products of all frames that are whole, and return the metrics."""
     present = [frame for frame in mission.frames if frame.index in run.whole]
+    if not present and set_aside:
+        index, reason = min(set_aside.items())
+        raise FrameError(f"{run.path}: no frame could be flown; frame {index}: {reason}")
     if not present:
         raise UserError(f"{run.path}: no frame was flown. Choose frames with --frames A:B")
     pixel = typical_pixel(run.frame, present)
@@ -211,33 +259,9 @@ def _write_products(mission: Mission, run: RunFolder, watch: Watcher) -> dict[st
         settings=mission.products,
         sample=pixel.figure(observe(mission, pixel.frame)) if pixel else None,
         manifest=found_manifest(run.path),
+        set_aside=set_aside,
         watch=watch,
     )
-
-
-def summary(folder: Path, metrics: dict[str, object]) -> str:
-    """Return what a run achieved in a few lines for the user."""
-    return "\n".join(
-        (
-            f"{metrics['points_bottom']} bottom points, {metrics['points_surface']} surface points",
-            f"bottom against the true seabed: bias {_metres(metrics['bias_m'])}, "
-            f"95 % within {_metres(metrics['p95_abs_error_m'])}, "
-            f"false bottoms {metrics['false_bottoms']}",
-            f"uncertainty, 95 %: vertical {_metres(metrics['tvu_median_m'])} holds for "
-            f"{_share(metrics['tvu_coverage'])}, horizontal {_metres(metrics['thu_median_m'])} for "
-            f"{_share(metrics['thu_coverage'])} of the points",
-            *verdict_lines(metrics),
-            f"written to {folder}: report.html, bottom.laz, bathymetry.tif and others",
-        )
-    )
-
-
-def _metres(value: object) -> str:
-    return f"{value:.3f} m" if isinstance(value, float) else "not measured"
-
-
-def _share(value: object) -> str:
-    return f"{100.0 * value:.1f} %" if isinstance(value, float) else "none"
 
 
 def fly_frames(
@@ -245,17 +269,17 @@ def fly_frames(
 ) -> Iterator[tuple[int, FrameResult, float]]:
     """Yield frames as they are done: number, result, seconds that it took.
 
-    So many ``workers`` fly at once, 0 is one for each core; the kernels run without the
-    interpreter lock.
+    So many threads fly at once, 0 is one for each core; the kernels run without the interpreter
+    lock.
+
+    Raises
+    ------
+    FrameError
+        When a frame fails.
     """
-
-    def timed(frame: Frame) -> tuple[int, FrameResult, float]:
-        start = time.perf_counter()
-        return frame.index, fly_frame(mission, frame), time.perf_counter() - start
-
-    pool = ThreadPoolExecutor(workers or os.cpu_count() or 1)
-    try:
-        for flown in as_completed([pool.submit(timed, frame) for frame in frames]):
-            yield flown.result()
-    finally:
-        pool.shutdown(cancel_futures=True)
+    by_number = {frame.index: frame for frame in frames}
+    crew = local_crew(workers, "threads")
+    for outcome in crew.fly(lambda index: fly_frame(mission, by_number[index]), by_number):
+        if isinstance(outcome, Failed):
+            raise FrameError(f"frame {outcome.index}: {outcome.reason}")
+        yield outcome.index, outcome.result, outcome.seconds

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from survey.errors import OtherRunError, UserError
 from survey.journal import Note, read_notes, write_note
-from survey.products.frame_file import FrameResult, read_frame, write_frame
+from survey.products.frame_file import FrameResult, read_frame
 from survey.products.json_file import write_json
 from survey.products.report.report import FIGURES
 from survey.products.writing import is_partial, write_whole
@@ -106,9 +106,10 @@ class RunFolder:
         """Return the place of a frame's file."""
         return frame_path(self.path, index)
 
-    def keep(self, index: int, result: FrameResult) -> None:
-        """Write a frame and note it in the journal."""
-        sha256 = hashlib.sha256(write_frame(self.frame_path(index), result)).hexdigest()
+    def keep(self, index: int, content: bytes) -> None:
+        """Write the file of a frame and note it in the journal."""
+        write_whole(self.frame_path(index), content)
+        sha256 = hashlib.sha256(content).hexdigest()
         write_note(self.path / JOURNAL, Note(frame=index, sha256=sha256, done=time.time()))
         self.whole[index] = sha256
 

@@ -13,8 +13,17 @@ from typing import Any
 from survey.errors import OtherRunError
 from survey.scenario.scenario import Scenario
 
+ROOT = Path(__file__).resolve().parent.parent
 MANIFEST, SCENARIO = "manifest.json", "scenario.toml"
 LIBRARIES = ("numpy", "scipy", "numba", "trimesh", "laspy", "rasterio", "pyproj")
+PARTS = {
+    "scenario_sha256": "scenario",
+    "files_sha256": "files that the scenario names",
+    "versions": "library versions",
+    "lock_sha256": "lock of the libraries",
+    "code_sha256": "code",
+    "format": "format",
+}
 MOST_KEYS = 4
 PROSE = {"title", "description", "expect", "source"}
 
@@ -28,6 +37,7 @@ def manifest_of(scenario: Scenario) -> dict[str, Any]:
         "scenario_sha256": hashlib.sha256(resolved.encode()).hexdigest(),
         "files_sha256": files,
         "versions": {name: metadata.version(name) for name in ("bathyflash", *LIBRARIES)},
+        "lock_sha256": _lock_digest(),
         "code_sha256": _code_digest(),
     }
 
@@ -50,12 +60,17 @@ def digest(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
+def _lock_digest() -> str | None:
+    """Return the hash of the lock file beside the packages; None where they came without it."""
+    lock = ROOT / "requirements.lock"
+    return digest(lock) if lock.exists() else None
+
+
 def _code_digest() -> str:
     digest = hashlib.sha256()
-    root = Path(__file__).resolve().parent.parent
     for package in ("survey", "terrain"):
-        for path in sorted((root / package).rglob("*.py")):
-            digest.update(path.relative_to(root).as_posix().encode())
+        for path in sorted((ROOT / package).rglob("*.py")):
+            digest.update(path.relative_to(ROOT).as_posix().encode())
             digest.update(path.read_bytes())
     return digest.hexdigest()
 
@@ -65,19 +80,25 @@ def require_same(path: Path, found: dict[str, Any], wanted: dict[str, Any], reso
 
     ``resolved`` is the scenario's text as it would lie in the folder.
     """
-    names = {
-        "scenario_sha256": f"scenario{_changed_keys(path / SCENARIO, resolved)}",
-        "files_sha256": "files that the scenario names",
-        "versions": "library versions",
-        "code_sha256": "code",
-        "format": "format",
-    }
-    other = [words for key, words in names.items() if found.get(key) != wanted[key]]
+    other = differences(found, wanted)
+    if "scenario" in other:
+        other[other.index("scenario")] += _changed_keys(path / SCENARIO, resolved)
     if other:
         raise OtherRunError(
             f"{path}: belongs to another run: other {', other '.join(other)}. "
             "Choose another folder with -o, or fly it anew with --refly"
         )
+
+
+def differences(found: Mapping[str, Any], wanted: Mapping[str, Any]) -> list[str]:
+    """Return in words in what two manifests differ.
+
+    Examples
+    --------
+    >>> differences({"code_sha256": "ab"}, {"code_sha256": "cd"})
+    ['code']
+    """
+    return [words for key, words in PARTS.items() if found.get(key) != wanted.get(key)]
 
 
 def _changed_keys(flown: Path, resolved: str) -> str:

@@ -16,6 +16,7 @@ from typing import TextIO
 from survey.errors import UserError
 
 LOCK = ".lock"
+HELD = set[TextIO]()
 TRIES, BETWEEN_TRIES = 3, 0.05  # [s]
 
 
@@ -48,8 +49,22 @@ def sole_pilot(folder: Path) -> Iterator[None]:
         file.truncate(0)
         json.dump(asdict(Pilot(process=os.getpid(), machine=socket.gethostname())), file)
         file.flush()
-        yield
+        HELD.add(file)
+        try:
+            yield
+        finally:
+            HELD.discard(file)
         file.truncate(0)
+
+
+def _let_go() -> None:
+    """Let go of inherited locks: a worker that outlives its pilot must not keep the folder."""
+    for file in HELD:
+        file.close()
+    HELD.clear()
+
+
+os.register_at_fork(after_in_child=_let_go)
 
 
 def pilot_of(folder: Path) -> Pilot | None:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
+from survey.products.writing import naming
 from survey.progress import Watcher
 
 LOG = "log.txt"
@@ -66,10 +67,11 @@ class Logged:
         self._watcher.finished(summary)
 
     def failed(self, error: BaseException) -> None:
-        """Note what ended the run."""
-        self._write(f"ended by {type(error).__name__}: {error}")
+        """Note what ended the run, if the disk still lets us."""
+        with suppress(OSError):
+            self._write(f"ended by {type(error).__name__}: {error}")
 
     def _write(self, text: str) -> None:
         now = datetime.now(UTC).isoformat(timespec="seconds")
-        with self._path.open("a", encoding="utf-8") as log:
+        with naming(self._path), self._path.open("a", encoding="utf-8") as log:
             log.writelines(f"{now} {line}\n" for line in text.splitlines())

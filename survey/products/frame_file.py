@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from survey.cloud.points import PixelRecord, PointCloud
 from survey.cloud.raw import RawReadings
-from survey.products.writing import write_whole
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,15 +72,8 @@ def _record(columns: Mapping[str, Any]) -> NDArray[np.void]:
     return record
 
 
-def write_frame(path: Path, result: FrameResult) -> bytes:
-    """Write a frame whole, and return its bytes."""
-    content = frame_bytes(result)
-    write_whole(path, content)
-    return content
-
-
 def read_frame(path: Path) -> FrameResult:
-    """Read a frame that `write_frame` wrote, without the detector's raw output.
+    """Read a frame's file of `frame_bytes`, without the detector's raw output.
 
     Raises
     ------

@@ -123,6 +123,7 @@ def write_products(
     settings: ProductSettings,
     sample: Figure | None = None,
     manifest: Mapping[str, Any] | None = None,
+    set_aside: Mapping[int, str] | None = None,
     watch: Watcher | None = None,
 ) -> dict[str, Any]:
     """Stitch the frames, write every product into the run folder, and return the metrics.
@@ -150,6 +151,8 @@ def write_products(
         The waveform of one pixel, for the report.
     manifest : mapping, optional
         What made the run, for the report.
+    set_aside : mapping, optional
+        Why frames are missing that could not be flown, by their number.
     watch : Watcher, optional
         Is told of the progress.
 
@@ -210,6 +213,9 @@ def write_products(
         pixels=look.pixels, elevation_at=seabed.elevation_at, water=settings.water
     )
     found["strip_adjustment"] = settings.strip_adjustment
+    found["frames_set_aside"] = [
+        {"frame": index, "reason": reason} for index, reason in sorted((set_aside or {}).items())
+    ]
     found["overlaps"] = overlap_metrics(overlaps.overlaps())
     found |= uncertainty.metrics()
     found["error_by_depth"] = depths.metrics()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 PARTIAL = ".partial"
@@ -42,14 +42,35 @@ def whole_file(path: Path) -> Iterator[Path]:
     (['note.txt'], 'whole')
     """
     partial = path.with_name(f".{path.stem}{PARTIAL}{path.suffix}")
+    with naming(path, partial):
+        try:
+            yield partial
+            flush(partial)
+            partial.replace(path)
+        except BaseException:
+            with suppress(OSError):
+                partial.unlink(missing_ok=True)
+            raise
+        flush(path.parent)
+
+
+@contextmanager
+def naming(path: Path, partial: Path | None = None) -> Iterator[None]:
+    """Let errors of the system that name no file, or its temporary name, name this one.
+
+    Examples
+    --------
+    >>> with naming(Path("bottom.laz")):
+    ...     raise OSError(28, "No space left on device")
+    Traceback (most recent call last):
+    OSError: [Errno 28] No space left on device: 'bottom.laz'
+    """
     try:
-        yield partial
-        flush(partial)
-        partial.replace(path)
-    except BaseException:
-        partial.unlink(missing_ok=True)
-        raise
-    flush(path.parent)
+        yield
+    except OSError as error:
+        if error.errno is None or error.filename not in (None, str(partial)):
+            raise
+        raise OSError(error.errno, error.strerror, str(path)) from error
 
 
 def is_partial(path: Path) -> bool:

@@ -13,7 +13,7 @@ from survey.cloud.points import Outcome, PixelRecord, PointClass, PointCloud
 from survey.cloud.truth import true_targets
 from survey.flight.pose import Frame
 from survey.preparation import product_settings
-from survey.products.frame_file import FrameResult
+from survey.products.frame_file import FrameResult, frame_bytes
 from survey.products.run_products import write_products
 from survey.run_folder import RunFolder
 from survey.scenario import components
@@ -45,7 +45,7 @@ def make_run(folder: Path, some: PointCloud) -> Path:
     seabed, flashes = components.seabed(scenario), components.frames(scenario)
     kept = RunFolder.open(folder / "run", scenario)
     for frame in flashes:
-        kept.keep(frame.index, seen(some, scenario, seabed, frame))
+        kept.keep(frame.index, frame_bytes(seen(some, scenario, seabed, frame)))
     write_products(
         kept.path,
         read=kept.frame,

@@ -13,7 +13,7 @@ import pytest
 from survey import run_identity
 from survey.errors import OtherRunError
 from survey.exit_status import OTHER_RUN, explain
-from survey.products.frame_file import FrameResult, frame_bytes, read_frame, write_frame
+from survey.products.frame_file import FrameResult, frame_bytes, read_frame
 from survey.run_folder import RunFolder
 from survey.scenario.scenario import Scenario
 
@@ -38,9 +38,9 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 
 def test_a_frame_reads_back_as_it_was_written(tmp_path: Path, result: FrameResult) -> None:
-    written = write_frame(tmp_path / "000003.npz", result)
+    (tmp_path / "000003.npz").write_bytes(written := frame_bytes(result))
     again = read_frame(tmp_path / "000003.npz")
-    assert written == (tmp_path / "000003.npz").read_bytes() == frame_bytes(again)
+    assert written == frame_bytes(again)
     for cloud in ("bottom", "surface"):
         for name, column in getattr(result, cloud).columns().items():
             found = getattr(again, cloud).columns()[name]
@@ -51,13 +51,13 @@ def test_a_frame_reads_back_as_it_was_written(tmp_path: Path, result: FrameResul
 
 def test_a_frame_over_land_has_no_surface(tmp_path: Path, result: FrameResult) -> None:
     dry = replace(result, surface=result.surface.select(slice(0, 0)))
-    write_frame(tmp_path / "000003.npz", dry)
+    (tmp_path / "000003.npz").write_bytes(frame_bytes(dry))
     surface = read_frame(tmp_path / "000003.npz").surface
     assert (len(surface), surface.position.shape, surface.frame.dtype) == (0, (0, 3), np.uint32)
 
 
 def test_anybody_reads_a_frame_with_numpy(tmp_path: Path, result: FrameResult) -> None:
-    write_frame(tmp_path / "000003.npz", result)
+    (tmp_path / "000003.npz").write_bytes(frame_bytes(result))
     with np.load(tmp_path / "000003.npz") as arrays:
         assert sorted(arrays) == ["bottom", "pixel", "surface"]
         assert np.array_equal(arrays["bottom"]["position"], result.bottom.position)
@@ -94,8 +94,8 @@ def test_a_run_is_taken_up_where_it_stopped(
     scenario: Scenario, tmp_path: Path, result: FrameResult
 ) -> None:
     run = RunFolder.open(tmp_path / "run", scenario)
-    run.keep(3, result)
-    run.keep(0, result)
+    run.keep(3, frame_bytes(result))
+    run.keep(0, frame_bytes(result))
     again = RunFolder.open(tmp_path / "run", scenario)
     assert again.whole == run.whole
     assert set(again.whole) == {0, 3}
@@ -107,14 +107,14 @@ def test_a_frame_that_is_not_what_the_journal_says_is_not_whole(
     scenario: Scenario, tmp_path: Path, result: FrameResult, damage: str
 ) -> None:
     run = RunFolder.open(tmp_path / "run", scenario)
-    run.keep(0, result)
-    run.keep(1, result)
+    run.keep(0, frame_bytes(result))
+    run.keep(1, frame_bytes(result))
     if damage == "gone":
         run.frame_path(1).unlink()
     else:
         run.frame_path(1).write_bytes(run.frame_path(1).read_bytes()[:-1])
     assert set(RunFolder.open(tmp_path / "run", scenario).whole) == {0}
-    run.keep(1, result)
+    run.keep(1, frame_bytes(result))
     assert set(RunFolder.open(tmp_path / "run", scenario).whole) == {0, 1}
 
 
@@ -122,7 +122,7 @@ def test_a_torn_or_strange_journal_costs_only_its_frames(
     scenario: Scenario, tmp_path: Path, result: FrameResult
 ) -> None:
     run = RunFolder.open(tmp_path / "run", scenario)
-    run.keep(0, result)
+    run.keep(0, frame_bytes(result))
     with (run.path / "journal.jsonl").open("a") as journal:
         journal.write('[]\n"word"\n{"frame": "x", "sha256": 1}\n{"frame": 7, "sha256": "ab"}\n{"fr')
     assert set(RunFolder.open(tmp_path / "run", scenario).whole) == {0}
@@ -132,7 +132,7 @@ def test_a_frame_without_a_note_in_the_journal_is_not_whole(
     scenario: Scenario, tmp_path: Path, result: FrameResult
 ) -> None:
     run = RunFolder.open(tmp_path / "run", scenario)
-    write_frame(run.frame_path(4), result)
+    run.frame_path(4).write_bytes(frame_bytes(result))
     assert RunFolder.open(tmp_path / "run", scenario).whole == {}
 
 
@@ -151,7 +151,7 @@ def refused(scenario: Scenario, path: Path) -> str:
 def test_another_scenario_is_refused(
     scenario: Scenario, tmp_path: Path, result: FrameResult
 ) -> None:
-    RunFolder.open(tmp_path / "run", scenario).keep(0, result)
+    RunFolder.open(tmp_path / "run", scenario).keep(0, frame_bytes(result))
     for change in ({"mission.seed": 2}, {"flight.lines": 2}, {"water.type": "clear"}):
         assert "other scenario" in refused(scenario.replace(**change), tmp_path / "run")
     assert set(RunFolder.open(tmp_path / "run", scenario).whole) == {0}
@@ -174,8 +174,11 @@ def test_other_code_and_versions_are_refused(
 ) -> None:
     RunFolder.open(tmp_path / "run", scenario)
     monkeypatch.setattr(run_identity, "_code_digest", lambda: "other")
+    monkeypatch.setattr(run_identity, "_lock_digest", lambda: "other")
     monkeypatch.setattr(run_identity.metadata, "version", lambda name: "0")
-    assert "other library versions, other code" in refused(scenario, tmp_path / "run")
+    assert "other library versions, other lock of the libraries, other code" in refused(
+        scenario, tmp_path / "run"
+    )
 
 
 def test_the_keys_that_differ_are_named(scenario: Scenario, tmp_path: Path) -> None:
@@ -190,7 +193,7 @@ def test_a_run_flown_anew_leaves_nothing_of_the_old_and_all_of_the_user_s(
     scenario: Scenario, tmp_path: Path, result: FrameResult
 ) -> None:
     run = RunFolder.open(tmp_path / "run", scenario)
-    run.keep(3, result)
+    run.keep(3, frame_bytes(result))
     for name in ("bottom.laz", "metrics.json", "trajectory_cblue.txt", "notes.md"):
         (run.path / name).write_text("old")
     other = RunFolder.open(tmp_path / "run", scenario.replace(**{"mission.seed": 2}), refly=True)
@@ -204,7 +207,7 @@ def test_a_note_after_a_torn_one_counts(
 ) -> None:
     run = RunFolder.open(tmp_path / "run", scenario)
     (run.path / "journal.jsonl").write_text('{"frame": 0, "sha')
-    run.keep(3, result)
+    run.keep(3, frame_bytes(result))
     assert set(RunFolder.open(tmp_path / "run", scenario).whole) == {3}
 
 
@@ -220,7 +223,7 @@ def test_why_a_frame_is_no_longer_whole_is_known(
 ) -> None:
     run = RunFolder.open(tmp_path / "run", scenario)
     for index in (0, 1, 2):
-        run.keep(index, result)
+        run.keep(index, frame_bytes(result))
     run.frame_path(0).unlink()
     run.frame_path(2).write_bytes(b"ruined")
     again = RunFolder.open(tmp_path / "run", scenario)

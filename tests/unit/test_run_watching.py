@@ -80,6 +80,24 @@ def test_a_killed_process_leaves_the_folder_free(
         pass
 
 
+def test_a_forked_worker_that_outlives_its_pilot_does_not_keep_the_folder(run: Path) -> None:
+    told, tell = os.pipe()
+    with sole_pilot(run):
+        worker = os.fork()
+        if worker == 0:
+            os.write(tell, b"forked")
+            time.sleep(60)
+            os._exit(0)
+        assert os.read(told, 6) == b"forked"
+    try:
+        assert pilot_of(run) is None
+        with sole_pilot(run):
+            pass
+    finally:
+        os.kill(worker, signal.SIGKILL)
+        os.waitpid(worker, 0)
+
+
 def test_status_tells_frames_rate_and_pilot(run: Path) -> None:
     write_note(run / JOURNAL, Note(frame=0, sha256="", done=100.0))
     stopped = RunStatus.of(run)

@@ -15,6 +15,7 @@ from survey.products.report.curves import depth_histogram, error_by_depth, found
 from survey.products.report.maps import depth_map, error_histogram, error_map, outcome_map
 from survey.products.report.page import Figure, figures, page
 from survey.products.report.tables import (
+    frames_set_aside,
     key_figures,
     missed_sentence,
     overlaps,
@@ -85,6 +86,7 @@ def write_report(folder: Path, found: Findings) -> None:
         *(f"<p>{escape(text)}</p>" for text in found.description.split("\n\n") if text.strip()),
         f"<p>{_mission(metrics)}</p>",
         *_verdict(metrics),
+        *frames_set_aside(metrics.get("frames_set_aside", [])),
         *figures(first),
         "<h2>Key figures</h2>",
         key_figures(metrics),

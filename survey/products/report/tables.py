@@ -74,6 +74,19 @@ def missed_sentence(metrics: Mapping[str, Any]) -> str:
     return f"Of {metrics['pixels_wet']} wet pixels {sum(missed.values())} missed it: {causes}."
 
 
+def frames_set_aside(frames: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return which frames are missing because they could not be flown, if there are any."""
+    if not frames:
+        return []
+    rows = [f"<tr><td>{row['frame']}</td><td>{escape(row['reason'])}</td></tr>" for row in frames]
+    return [
+        "<h2>Frames set aside</h2>",
+        "<p>These failed three times and are missing from all that is told here. "
+        "The same command tries them again.</p>",
+        f"<table>\n{''.join(rows)}\n</table>",
+    ]
+
+
 def substrates(found: Mapping[str, Mapping[str, Any]]) -> list[str]:
     """Return what was found on each bottom, where there are several."""
     if len(found) < 2:

@@ -1,0 +1,1 @@
+"""Who does the work of many frames: threads, processes, or the workers of a dask cluster."""
