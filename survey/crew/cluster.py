@@ -70,7 +70,7 @@ class Cluster:
         return ended
 
     def _require_scheduler(self) -> None:
-        if self.client.status == "closed":
+        if self.client.status in ("closing", "closed"):
             raise ClusterError("the dask scheduler is gone. The same command goes on from here")
 
 

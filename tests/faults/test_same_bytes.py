@@ -18,6 +18,7 @@ import pytest
 
 from survey.crew.cluster import ClusterError, connected
 from survey.crew.outcome import Crew, Outcome, Result, Work
+from survey.crew.patience import patiently
 from survey.crew.processes import Processes
 from survey.crew.threads import Threads
 from tests.faults.rehearsal import Rehearsal, products
@@ -129,7 +130,7 @@ def test_a_cluster_that_loses_its_scheduler_ends_a_run_with_an_error(
     with cluster(tmp_path, workers=0) as (file, (scheduler,)), connected(file) as crew:
         Timer(1.0, scheduler.kill).start()
         with pytest.raises(ClusterError, match=r"is gone\. The same command goes on"):
-            list(crew.fly(abs, range(9)))
+            list(patiently(crew, abs, range(9)))
 
 
 @dataclass(frozen=True)

@@ -63,7 +63,7 @@ def test_run_hands_its_wishes_to_the_mission(club: FlyingClub, file: Path, tmp_p
     )
     assert result.exit_code == 0
     assert club.asked["folder"] == tmp_path / "out"
-    assert club.asked["workers"] == 2
+    assert club.asked["crew"].described == "2 processes"
     assert club.asked["frames"] == range(1, 2)
     assert club.asked["scenario"].water.type == "clear"
     assert club.asked["scenario"].flight.lines == 3
@@ -75,7 +75,17 @@ def test_run_takes_workers_from_the_scenario_and_flies_all_frames(
     club: FlyingClub, file: Path, tmp_path: Path
 ) -> None:
     assert typed("run", file, "-o", tmp_path, "--set", "run.workers=5").exit_code == 0
-    assert (club.asked["workers"], club.asked["frames"]) == (5, None)
+    assert (club.asked["crew"].described, club.asked["frames"]) == ("5 processes", None)
+
+
+def test_run_flies_with_threads_and_on_clusters(
+    club: FlyingClub, file: Path, tmp_path: Path
+) -> None:
+    assert typed("run", file, "-o", tmp_path, "--workers", "3", "--with", "threads").exit_code == 0
+    assert club.asked["crew"].described == "3 threads"
+    both = typed("run", file, "-o", tmp_path, "--with", "threads", "--cluster", "tcp://there:1")
+    assert both.exit_code == 2
+    assert "Leave out --workers and --with" in both.stderr
 
 
 def test_quiet_is_quiet(club: FlyingClub, file: Path, tmp_path: Path) -> None:
