@@ -115,11 +115,11 @@ def frame_attribute(frames: NDArray[Any]) -> dict[str, Any]:
     }
 
 
-def categories_of(
-    cloud: PointCloud, substrates: Mapping[int, str]
-) -> list[dict[str, Any]]:
+def categories_of(cloud: PointCloud, substrates: Mapping[int, str]) -> list[dict[str, Any]]:
     """Return how class, cause, substrate and line of the points are shown, with their counts."""
-    classes = {int(kind): f"{kind.name.lower().replace('_', ' ')} ({kind:d})" for kind in PointClass}
+    classes = {
+        int(kind): f"{kind.name.lower().replace('_', ' ')} ({kind:d})" for kind in PointClass
+    }
     causes = {int(cause): cause.name.lower().replace("_", " ") for cause in Cause}
     return [
         _category("class", "Class (LAS)", cloud.classification, classes),

@@ -99,7 +99,9 @@ def _planes(name: str, column: NDArray[Any]) -> NDArray[np.uint8]:
     """Return a column's bytes (bytes, n), the low ones first, as many as it needs."""
     values = np.asarray(column).astype(np.int64)
     if values.size and np.abs(values).max() > LARGEST:
-        raise ValueError(f"{name}: {values[np.abs(values).argmax()]} does not fit. Use larger steps")
+        raise ValueError(
+            f"{name}: {values[np.abs(values).argmax()]} does not fit. Use larger steps"
+        )
     difference = np.diff(values, prepend=0)
     zigzag = np.where(difference < 0, -2 * difference - 1, 2 * difference).astype("<u4")
     count = max((int(zigzag.max(initial=0)).bit_length() + 7) // 8, 1)

@@ -8,21 +8,19 @@ from collections.abc import Mapping
 from hashlib import sha256
 from html import escape
 from importlib.resources import files
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.points import PointCloud
-from survey.products.writing import write_whole
-from viewer.run_folder import FlownSurvey, read_run
+from viewer.run_folder import FlownSurvey
 from viewer.scene import median_spacing
 from viewer.view import exaggeration, long_axis
 from viewer.web.attributes import categories_of, depth_attribute, frame_attribute, measures_of
 from viewer.web.flight import flight_of
 from viewer.web.left_out import left_out
-from viewer.web.points import chosen_points, packed_bottom, packed_cloud
+from viewer.web.points import Chosen, packed_bottom, packed_cloud
 
 FloatArray = NDArray[np.float64]
 SCRIPTS = (
@@ -33,58 +31,27 @@ ASSETS = files("viewer.web") / "assets"
 VENDOR = files("viewer.web") / "vendor"
 
 
-def write_page(
-    run: Path,
-    file: Path,
+def page_contents(
+    flown: FlownSurvey,
+    chosen: Mapping[str, Chosen],
     *,
-    points: int,
     waveforms: Mapping[str, Any] | None = None,
     seabed: Mapping[str, Any] | None = None,
     substrates: Mapping[int, str] | None = None,
-) -> None:
-    """Write the page of a finished run.
+) -> dict[str, Any]:
+    """Return all that the page shows, ready for JSON.
 
     Parameters
     ----------
-    run : Path
-        Run folder; scenario, clouds and trajectory are read.
-    file : Path
-        HTML to write, replaced if it exists.
-    points : int
-        At most so many points of the bottom.
+    flown : FlownSurvey
+    chosen : mapping of str to Chosen
+        Its points, from `viewer.web.points.chosen_points`.
     waveforms, seabed : mapping, optional
         From `viewer.web.waveforms.waveforms` and `viewer.web.seabed.true_seabed`; the page says
         when they are missing.
     substrates : mapping, optional
         Names of the codes of what the bottom is made of; numbers stand for those without.
-
-    Raises
-    ------
-    FileNotFoundError
-        If the run folder lacks a file.
-    ValueError
-        If a file is broken or holds no bottom point.
     """
-    contents = page_contents(
-        read_run(run),
-        points=points,
-        waveforms=waveforms,
-        seabed=seabed,
-        substrates=substrates or {},
-    )
-    write_whole(file, html(contents).encode())
-
-
-def page_contents(
-    flown: FlownSurvey,
-    *,
-    points: int,
-    waveforms: Mapping[str, Any] | None,
-    seabed: Mapping[str, Any] | None,
-    substrates: Mapping[int, str],
-) -> dict[str, Any]:
-    """Return all that the page shows, ready for JSON."""
-    chosen = chosen_points(flown, at_most=points)
     bottom = chosen["bottom"].cloud
     columns = int(max(kind.cloud.column.max(initial=0) for kind in chosen.values())) + 1
     axis = long_axis(bottom.position[:, :2], bottom.position[:, 2])
@@ -97,7 +64,7 @@ def page_contents(
         "axis": axis.tolist(),
         "exaggeration": _exaggeration(bottom.position, axis, flown.water_level),
         "spacing": median_spacing(bottom.position[:, :2]),
-        "attributes": _attributes(flown, bottom, substrates),
+        "attributes": _attributes(flown, bottom, substrates or {}),
         "clouds": {
             "bottom": packed_bottom(bottom, columns_of_camera=columns),
             **{

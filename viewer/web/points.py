@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.points import PointCloud
+from survey.errors import UserError
 from survey.products.grids import SOLID_CLASSES
 from viewer.run_folder import FlownSurvey
 from viewer.web.attributes import measures_of
@@ -48,12 +49,12 @@ def chosen_points(flown: FlownSurvey, *, at_most: int) -> dict[str, Chosen]:
 
     Raises
     ------
-    ValueError
+    UserError
         If there is no point of bottom or ground.
     """
     solid = np.isin(flown.bottom.classification, SOLID_CLASSES)
     if not solid.any():
-        raise ValueError(
+        raise UserError(
             "no point of bottom or ground in the run, so there is nothing to show. "
             "See the outcomes in its report.html for the reason"
         )

@@ -7,21 +7,20 @@ from typing import Any
 import numpy as np
 
 from survey.cloud.points import PointCloud
-from survey.scenario import components
-from survey.scenario.scenario import Scenario
+from terrain.seabed import Seabed
 from viewer.web.columns import packed, rounded, start_of
 from viewer.web.points import VERTICAL_STEP
 
 LARGEST_CELLS = 40_000
 
 
-def true_seabed(scenario: Scenario, bottom: PointCloud) -> dict[str, Any]:
+def true_seabed(seabed: Seabed, bottom: PointCloud) -> dict[str, Any]:
     """Return true elevations on a grid over the extent of a cloud, as the page's JSON.
 
     Parameters
     ----------
-    scenario : Scenario
-        Its seabed is built again.
+    seabed : Seabed
+        What was flown over.
     bottom : PointCloud
         Points of the bottom, local [m].
 
@@ -30,16 +29,11 @@ def true_seabed(scenario: Scenario, bottom: PointCloud) -> dict[str, Any]:
     dict
         ``x``, ``y`` of the first node and ``cell`` [m], ``columns``, ``rows``, and the elevations
         row by row as `packed`.
-
-    Raises
-    ------
-    UserError, OSError
-        When the seabed cannot be built, since a file of it has moved.
     """
     low, high = bottom.position[:, :2].min(axis=0), bottom.position[:, :2].max(axis=0)
     cell = cell_for(high - low)
     x, y = (np.arange(low[i], high[i] + cell, cell) for i in range(2))
-    elevation = components.seabed(scenario).elevation_at(*np.meshgrid(x, y)).ravel()
+    elevation = seabed.elevation_at(*np.meshgrid(x, y)).ravel()
     return {
         "x": float(low[0]),
         "y": float(low[1]),

@@ -90,8 +90,7 @@ def _curves(seen: xarray.Dataset) -> dict[str, NDArray[Any]]:
         "counts": np.round(seen.counts.values).astype(np.int64),
         **{name: light(f"expected_{name}", LIGHT_STEP) for name in LIGHT},
         **{
-            f"{name}_error": light(f"expected_{name}_standard_error", ERROR_STEP)
-            for name in ERRORS
+            f"{name}_error": light(f"expected_{name}_standard_error", ERROR_STEP) for name in ERRORS
         },
         **{
             f"{name}_threshold": np.broadcast_to(

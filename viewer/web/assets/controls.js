@@ -3,6 +3,7 @@ function wire(app) {
   const { data } = app;
   element("title").textContent = data.title;
   element("description").textContent = data.description;
+  element("datum").textContent = `Places in ${data.crs}; water level at ${signed(data.waterLevel)} m.`;
   element("left-out").querySelector("ul").append(...data.leftOut.map((textContent) => make("li", { textContent })));
   const keyOf = (i) => (i < 10 ? `  (${(i + 1) % 10})` : "");
   element("attribute").append(...data.attributes.map(({ name, label }, i) => make("option", { value: name, textContent: label + keyOf(i) })));
@@ -25,6 +26,8 @@ function wire(app) {
   element("next-mark").addEventListener("click", () => app.stepMark(1));
   element("close").addEventListener("click", () => app.closeWaveform());
 }
+
+const signed = (value) => (value < 0 ? "−" : "+") + Math.abs(value).toFixed(2);
 
 /** Grey out what the page does not hold. */
 function disable(id) {
