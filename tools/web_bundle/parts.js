@@ -1,8 +1,7 @@
+// What the page takes of three.js.
 export {
   BufferAttribute,
   BufferGeometry,
-  Color,
-  DataTexture,
   DoubleSide,
   Group,
   Line,
@@ -12,13 +11,10 @@ export {
   Matrix4,
   Mesh,
   MeshBasicMaterial,
-  MOUSE,
   OrthographicCamera,
   Points,
   Scene,
   ShaderMaterial,
-  Sphere,
-  Vector2,
   Vector3,
   WebGLRenderer,
 } from "three";

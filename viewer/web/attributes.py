@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from survey.cloud.points import Cause, PointClass, PointCloud
 from survey.products.depth_colours import COLOURS, LAND, depth_range
+from terrain.substrate import UNLABELLED
 from viewer.web.columns import IntArray, logarithmic, rounded, start_of
 
 FloatArray = NDArray[np.float64]
@@ -31,7 +32,8 @@ class Measure:
 
     Parameters
     ----------
-    name : str
+    name, short : str
+        In the file, and in a sentence.
     label, unit : str
         For the legend.
     values : callable
@@ -43,6 +45,7 @@ class Measure:
     """
 
     name: str
+    short: str
     label: str
     unit: str
     values: Callable[[PointCloud], FloatArray]
@@ -58,6 +61,7 @@ def elevation_error(cloud: PointCloud) -> FloatArray:
 MEASURES = (
     Measure(
         name="error",
+        short="error",
         label="Error, measured less true elevation",
         unit="m",
         values=elevation_error,
@@ -66,6 +70,7 @@ MEASURES = (
     ),
     Measure(
         name="tvu",
+        short="TVU",
         label="Vertical uncertainty, 95 % (TVU)",
         unit="m",
         values=lambda cloud: cloud.tvu.astype(np.float64),
@@ -74,6 +79,7 @@ MEASURES = (
     ),
     Measure(
         name="thu",
+        short="THU",
         label="Horizontal uncertainty, 95 % (THU)",
         unit="m",
         values=lambda cloud: cloud.thu.astype(np.float64),
@@ -124,7 +130,12 @@ def categories_of(cloud: PointCloud, substrates: Mapping[int, str]) -> list[dict
     return [
         _category("class", "Class (LAS)", cloud.classification, classes),
         _category("cause", "What moved the point most", cloud.cause, causes),
-        _category("substrate", "What the bottom is made of", cloud.substrate, substrates),
+        _category(
+            "substrate",
+            "What the bottom is made of",
+            cloud.substrate,
+            {UNLABELLED: "unlabelled", **substrates},
+        ),
         _category("line", "Survey line", cloud.line, {}),
     ]
 

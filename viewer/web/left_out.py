@@ -27,14 +27,17 @@ def left_out(
         *(_points(kind, NAMES[name]) for name, kind in chosen.items()),
         f"Places are rounded to {HORIZONTAL_STEP * 100:g} cm, heights to "
         f"{VERTICAL_STEP * 1000:g} mm.",
-        "Rounded are "
-        + ", ".join(f"{measure.name} to {measure.step * 1000:g} mm" for measure in MEASURES)
-        + f", signal-to-noise ratio to {SNR_STEP / 2:.0%}.".replace("%", " %"),
+        _roundings(),
         "Of each point's other columns none is here: reflectance, counts, uncorrected and true "
         "place stand in bottom.ply.",
         _waveforms(waveforms),
         _seabed(seabed),
     ]
+
+
+def _roundings() -> str:
+    steps = ", ".join(f"{measure.short} to {measure.step * 1000:g} mm" for measure in MEASURES)
+    return f"Rounded are {steps}, signal-to-noise ratio within {100 * SNR_STEP / 2:g} %."
 
 
 def _points(kind: Chosen, words: str) -> str:
@@ -50,8 +53,8 @@ def _waveforms(found: Mapping[str, Any] | None) -> str:
     frames = sorted({pixel["frame"] for pixel in found["pixels"]})
     return (
         f"Waveforms of {len(found['pixels'])} marked pixels of {len(frames)} frames are here, "
-        f"light rounded to {LIGHT_STEP / 2:.0%}".replace("%", " %")
-        + f" and left out below {LEAST_LIGHT:g} photo-electrons a bin."
+        f"light rounded within {100 * LIGHT_STEP / 2:g} % "
+        f"and left out below {LEAST_LIGHT:g} photo-electrons a bin."
     )
 
 

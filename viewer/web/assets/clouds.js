@@ -19,8 +19,14 @@ varying vec3 shade;
 void main() {
   float radius = length(2.0 * gl_PointCoord - 1.0);
   if (radius > 1.0) discard;
-  gl_FragColor = vec4(radius > 0.5 ? vec3(1.0) : shade, 1.0);
-  if (radius > 0.85) gl_FragColor = vec4(0.12, 0.17, 0.2, 1.0);
+  gl_FragColor = vec4(radius > 0.62 ? vec3(0.12, 0.17, 0.2) : shade, 1.0);
+}`;
+const CIRCLE = `
+varying vec3 shade;
+void main() {
+  float radius = length(2.0 * gl_PointCoord - 1.0);
+  if (radius > 1.0 || radius < 0.68) discard;
+  gl_FragColor = vec4(shade, 1.0);
 }`;
 
 function dotMaterial(fragmentShader, more = {}) {

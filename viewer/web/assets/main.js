@@ -2,7 +2,10 @@ const SURFACE_COLOUR = "#2f7fb0";
 const OTHER_COLOUR = "#b03a5b";
 const FOUND_COLOUR = "#ffffff";
 const MISSED_COLOUR = "#d55e00";
-const MARK_PIXELS = 11;
+const CHOSEN_COLOUR = "#e6007a";
+const POINTED_COLOUR = "#1f2b33";
+const MARK_PIXELS = 7;
+const CHOSEN_PIXELS = 19;
 const CLICK_PIXELS = 4;
 
 /** The page: its data, its view, and what the controls do. */
@@ -42,7 +45,8 @@ class App {
       pixel: columns.pixel,
     };
     this.cloud = dots(this.places, plain(columns.x.length, NO_VALUE), dotMaterial(DISC));
-    this.view.upright.add(this.cloud);
+    this.pointed = newCircle(POINTED_COLOUR);
+    this.view.upright.add(this.cloud, this.pointed);
   }
 
   addPlain(name, columns, colour) {
@@ -77,7 +81,9 @@ class App {
     this.frames.marks = pixels.map(({ frame }) => frame);
     this.shown.marks = dots(places, colours, material);
     this.shown.marks.renderOrder = 1;
-    this.view.upright.add(this.shown.marks);
+    this.chosen = newCircle(CHOSEN_COLOUR);
+    this.view.upright.add(this.shown.marks, this.chosen);
+    showKey();
   }
 
   colour(name = element("attribute").value) {
@@ -132,13 +138,19 @@ class App {
 
   /** Say what lies at a place of the page, and show the nearest waveform. */
   pick(place) {
-    const mark = this.shown.marks?.visible ? this.view.nearest(this.shown.marks, place, MARK_PIXELS) : -1;
+    const mark = this.shown.marks?.visible ? this.view.nearest(this.shown.marks, place, 1.5 * MARK_PIXELS) : -1;
     const point = this.view.nearest(this.cloud, place, 15);
     if (mark < 0 && point < 0) return;
-    element("picked").hidden = point < 0;
-    if (point >= 0) element("picked").textContent = this.pointWords(point);
+    if (point >= 0) this.showPoint(point);
     if (mark >= 0) this.showMark(mark);
     else if (this.waveforms) this.showNearestMark(point);
+  }
+
+  showPoint(point) {
+    element("picked").hidden = false;
+    element("picked").textContent = this.pointWords(point);
+    circle(this.pointed, this.places, point);
+    this.view.draw();
   }
 
   pickMiddle() {
@@ -173,6 +185,7 @@ class App {
   }
 
   showMark(number, words = "") {
+    circle(this.chosen, this.shown.marks.geometry.attributes.position.array, number);
     this.waveforms.show(number, words);
     this.view.resize();
     this.waveforms.draw();
@@ -190,13 +203,12 @@ class App {
   }
 
   stepMark(step) {
-    if (!this.waveforms) return;
-    const count = this.waveforms.pixels.length;
-    this.showMark((Math.max(this.waveforms.shown, step < 0 ? 0 : -1) + step + count) % count);
+    if (this.waveforms) this.showMark(this.waveforms.step(step));
   }
 
   closeWaveform() {
     this.waveforms?.hide();
+    for (const ring of [this.chosen, this.pointed]) if (ring) ring.visible = false;
     element("picked").hidden = true;
     this.view.resize();
   }
@@ -210,6 +222,20 @@ class App {
       if (down && Math.hypot(place[0] - down[0], place[1] - down[1]) < CLICK_PIXELS) this.pick(place);
     });
   }
+}
+
+/** A circle about one place, hidden until it has one. */
+function newCircle(colour) {
+  const made = dots(new Float32Array(3), plain(1, colour), dotMaterial(CIRCLE, { depthTest: false, transparent: true }));
+  made.material.uniforms.leastPixels.value = CHOSEN_PIXELS * window.devicePixelRatio;
+  made.renderOrder = 2;
+  made.visible = false;
+  return made;
+}
+
+function circle(ring, places, number) {
+  ring.geometry.attributes.position.set(places.subarray(3 * number, 3 * number + 3)).needsUpdate = true;
+  ring.visible = true;
 }
 
 /** Corners of the box of places, marked as stretched with the heights. */

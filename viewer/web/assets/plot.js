@@ -43,8 +43,9 @@ function powerWords(value) {
 function panel({ left, top, width, height, x: [x0, x1], y: [y0, y1] }) {
   const toX = (x) => left + ((x - x0) / (x1 - x0)) * width;
   const share = (y) => Math.log(Math.max(y, y0 * 1e-3) / y0) / Math.log(y1 / y0);
-  const toY = (y) => top + height * (1 - Math.min(Math.max(share(y), -0.02), 1.02));
-  return { left, top, width, height, x0, x1, y0, y1, toX, toY };
+  const toY = (y) => top + height * (1 - share(y));
+  const clipped = drawing("svg", { x: left, y: top, width, height, viewBox: `${left} ${top} ${width} ${height}` });
+  return { left, top, width, height, x0, x1, y0, y1, toX, toY, clipped };
 }
 
 function axes(svg, area, { xLabel, yLabel }) {
@@ -59,26 +60,27 @@ function axes(svg, area, { xLabel, yLabel }) {
   }
   svg.append(drawing("rect", { x: left, y: top, width, height, fill: "none", stroke: "#9aa7b0" }));
   if (xLabel) svg.append(drawing("text", { x: left + width / 2, y: top + height + 31, "text-anchor": "middle" }, xLabel));
+  svg.append(area.clipped);
   const middle = top + height / 2;
   svg.append(drawing("text", { x: 13, y: middle, "text-anchor": "middle", transform: `rotate(-90 13 ${middle})` }, yLabel));
 }
 
-/** A curve through (x, y) of the bins inside the panel. */
-function curve(svg, area, xs, ys, style) {
+/** A curve through (x, y) of the bins, cut at the edges of the panel. */
+function curve(area, xs, ys, style) {
   const points = xs.flatMap((x, i) => (inside(area, x) ? [`${area.toX(x).toFixed(1)},${area.toY(ys[i]).toFixed(1)}`] : []));
-  svg.append(drawing("polyline", { points: points.join(" "), fill: "none", ...style }));
+  area.clipped.append(drawing("polyline", { points: points.join(" "), fill: "none", ...style }));
 }
 
-function band(svg, area, xs, low, high, fill) {
+function band(area, xs, low, high, fill) {
   const shown = xs.map((_, i) => i).filter((i) => inside(area, xs[i]));
   const at = (i, ys) => `${area.toX(xs[i]).toFixed(1)},${area.toY(ys[i]).toFixed(1)}`;
   const points = [...shown.map((i) => at(i, high)), ...shown.reverse().map((i) => at(i, low))];
-  svg.append(drawing("polygon", { points: points.join(" "), fill, "fill-opacity": 0.25 }));
+  area.clipped.append(drawing("polygon", { points: points.join(" "), fill, "fill-opacity": 0.25 }));
 }
 
 const inside = ({ x0, x1 }, x) => x >= x0 && x <= x1;
 
-function upright(svg, area, x, style) {
+function upright(area, x, style) {
   if (x === null || !inside(area, x)) return;
-  svg.append(drawing("line", { x1: area.toX(x), x2: area.toX(x), y1: area.top, y2: area.top + area.height, ...style }));
+  area.clipped.append(drawing("line", { x1: area.toX(x), x2: area.toX(x), y1: area.top, y2: area.top + area.height, ...style }));
 }

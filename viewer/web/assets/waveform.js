@@ -34,6 +34,12 @@ class Waveforms {
     element("waveform").hidden = true;
   }
 
+  /** The next pixel to show, forwards or back; at first the first whose bottom was found. */
+  step(by) {
+    if (this.shown < 0) return Math.max(this.pixels.findIndex(({ outcome }) => outcome === "found"), 0);
+    return (this.shown + by + this.pixels.length) % this.pixels.length;
+  }
+
   draw() {
     if (this.shown < 0) return;
     const plots = element("plots");
@@ -42,10 +48,10 @@ class Waveforms {
     const pixel = this.pixels[this.shown];
     const times = Array.from({ length: this.bins }, (_, i) => pixel.firstBin + i * pixel.binWidth);
     const x = element("whole-gate").checked ? [times[0], times.at(-1)] : aboutEchoes(pixel, times);
-    const room = Math.max(height - 118, 40);
+    const room = Math.max(height - 92, 40);
     const place = { left: 62, width: width - 70, x };
-    this.lightPanel(svg, { ...place, top: 38, height: 0.6 * room }, pixel, times);
-    this.gatePanel(svg, { ...place, top: 58 + 0.6 * room, height: 0.4 * room }, pixel, times);
+    this.lightPanel(svg, { ...place, top: 20, height: 0.6 * room }, pixel, times);
+    this.gatePanel(svg, { ...place, top: 34 + 0.6 * room, height: 0.4 * room }, pixel, times);
     plots.replaceChildren(svg);
   }
 
@@ -61,26 +67,18 @@ class Waveforms {
     const high = 2 * Math.max(...counts, ...light.surface, ...light.column, ...light.bottom, 1);
     const area = panel({ ...place, y: [low, high] });
     axes(svg, area, { yLabel: "per bin" });
-    curve(svg, area, times, counts, { stroke: COUNTS_COLOUR, "stroke-width": 0.8 });
+    curve(area, times, counts, { stroke: COUNTS_COLOUR, "stroke-width": 0.8 });
     for (const [name, values] of Object.entries(light)) {
       const stroke = ORIGIN_COLOURS[name];
       if (name !== "surface") {
         const error = this.curveOf(`${name}_error`, this.shown);
-        band(svg, area, times, values.map((v, i) => v - error[i]), values.map((v, i) => v + error[i]), stroke);
+        band(area, times, values.map((v, i) => v - error[i]), values.map((v, i) => v + error[i]), stroke);
       }
-      curve(svg, area, times, values, { stroke, "stroke-width": 1.8 });
+      curve(area, times, values, { stroke, "stroke-width": 1.8 });
     }
-    const level = { stroke: ORIGIN_COLOURS.background, "stroke-width": 1.2, "stroke-dasharray": "5 4" };
-    curve(svg, area, times, times.map(() => pixel.background), level);
-    markTimes(svg, area, pixel);
+    curve(area, times, times.map(() => pixel.background), BACKGROUND_LINE);
+    markTimes(area, pixel);
     depthAxis(svg, area, pixel);
-    key(svg, place.left, 10, [
-      ["counts", { stroke: COUNTS_COLOUR }],
-      ...["surface", "column", "bottom"].map((name) => [`light of ${name}`, { stroke: ORIGIN_COLOURS[name], "stroke-width": 2 }]),
-      ["background", level],
-      ["true time", { stroke: COUNTS_COLOUR, "stroke-dasharray": "1.5 2.5", "stroke-width": 1.6 }],
-      ["time as ranged", { stroke: COUNTS_COLOUR, "stroke-width": 1.6 }],
-    ]);
   }
 
   gatePanel(svg, place, pixel, times) {
@@ -89,11 +87,11 @@ class Waveforms {
     const high = 2 * Math.max(...sums, ...thresholds.flatMap(([, values]) => values), 1);
     const area = panel({ ...place, y: [0.7, high] });
     axes(svg, area, { xLabel: "time after emission [ns]; dashed: threshold for a surface, for a bottom echo", yLabel: `per ${this.gateBins} bins` });
-    curve(svg, area, times, sums, { stroke: COUNTS_COLOUR, "stroke-width": 1 });
+    curve(area, times, sums, { stroke: COUNTS_COLOUR, "stroke-width": 1 });
     for (const [name, values] of thresholds) {
-      curve(svg, area, times, values, { stroke: ORIGIN_COLOURS[name], "stroke-width": 1.4, "stroke-dasharray": "6 4" });
+      curve(area, times, values, { stroke: ORIGIN_COLOURS[name], "stroke-width": 1.4, "stroke-dasharray": "6 4" });
     }
-    markTimes(svg, area, pixel);
+    markTimes(area, pixel);
   }
 }
 
@@ -112,12 +110,12 @@ function aboutEchoes(pixel, times) {
   return [Math.max(low - 0.6 * room, times[0]), Math.min(high + 1.4 * room, times.at(-1))];
 }
 
-function markTimes(svg, area, pixel) {
+function markTimes(area, pixel) {
   for (const name of ["surface", "bottom"]) {
     const stroke = ORIGIN_COLOURS[name];
     const suffix = name[0].toUpperCase() + name.slice(1);
-    upright(svg, area, pixel[`found${suffix}`], { stroke, "stroke-width": 1.4 });
-    upright(svg, area, pixel[`true${suffix}`], { stroke, "stroke-width": 1.6, "stroke-dasharray": "1.5 2.5" });
+    upright(area, pixel[`found${suffix}`], { stroke, ...FOUND_TIME });
+    upright(area, pixel[`true${suffix}`], { stroke, ...TRUE_TIME });
   }
 }
 
@@ -132,14 +130,25 @@ function depthAxis(svg, area, { trueSurface, metresPerNs }) {
   }
 }
 
-/** Lines with their meaning, one beside the other. */
-function key(svg, left, y, entries) {
-  let x = left;
-  for (const [words, style] of entries) {
-    svg.append(drawing("line", { x1: x, x2: x + 18, y1: y, y2: y, ...style }));
-    svg.append(drawing("text", { x: x + 23, y: y + 4 }, words));
-    x += 40 + 6.3 * words.length;
-  }
+const BACKGROUND_LINE = { stroke: ORIGIN_COLOURS.background, "stroke-width": 1.2, "stroke-dasharray": "5 4" };
+const TRUE_TIME = { "stroke-width": 1.6, "stroke-dasharray": "1.5 2.5" };
+const FOUND_TIME = { "stroke-width": 1.4 };
+const KEY = [
+  ["counts", { stroke: COUNTS_COLOUR }],
+  ...["surface", "column", "bottom"].map((name) => [`expected of ${name}`, { stroke: ORIGIN_COLOURS[name], "stroke-width": 2.4 }]),
+  ["expected background", BACKGROUND_LINE],
+  ["true time", { stroke: COUNTS_COLOUR, ...TRUE_TIME }],
+  ["time as ranged", { stroke: COUNTS_COLOUR, ...FOUND_TIME }],
+];
+
+/** Lines with their meaning. */
+function showKey() {
+  const entries = KEY.map(([words, style]) => {
+    const sample = drawing("svg", { width: 22, height: 10 });
+    sample.append(drawing("line", { x1: 0, x2: 22, y1: 5, y2: 5, ...style }));
+    return make("span", {}, [sample, words]);
+  });
+  element("key").replaceChildren(...entries, "band: Monte Carlo standard error");
 }
 
 function numbersOf(pixel) {
