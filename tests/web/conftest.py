@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -148,6 +148,18 @@ def made_waveforms(cloud: PointCloud, *, bins: int = 120) -> dict[str, Any]:
         "gateBins": 5,
         "pulses": 1,
     }
+
+
+@pytest.fixture(scope="session")
+def survey_of() -> Callable[..., FlownSurvey]:
+    """Make a survey of another size: frames, rows, columns."""
+    return made_survey
+
+
+@pytest.fixture(scope="session")
+def waveforms_of() -> Callable[[PointCloud], dict[str, Any]]:
+    """Make waveforms of some points of a cloud."""
+    return made_waveforms
 
 
 @pytest.fixture(scope="session")

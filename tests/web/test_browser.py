@@ -25,7 +25,7 @@ class Opened:
 
 @pytest.fixture(scope="module")
 def opened(browser: Any, page_file: Path) -> Iterator[Opened]:
-    page = browser.new_page(viewport={"width": 1100, "height": 800})
+    page = browser.new_page(viewport={"width": 900, "height": 600})
     found = Opened(page)
     page.on("console", lambda message: found.said.append(message.text))
     page.on("pageerror", lambda error: found.said.append(str(error)))
@@ -197,8 +197,9 @@ def test_waveforms_are_reached_without_a_mouse(page: Any) -> None:
 
 def test_every_control_has_a_name_and_the_focus_is_seen(page: Any) -> None:
     nameless = page.evaluate(
-        "[...document.querySelectorAll('input, select, button')]"
-        ".filter((e) => !e.labels?.length && !e.textContent.trim() && !e.ariaLabel).map((e) => e.id)"
+        "[...document.querySelectorAll('input, select, button')].filter((control) => "
+        "!control.labels?.length && !control.textContent.trim() && !control.ariaLabel)"
+        ".map((control) => control.id)"
     )
     assert nameless == []
     page.keyboard.press("Tab")
@@ -212,7 +213,7 @@ def test_the_page_says_what_it_is_and_what_it_left_out(page: Any) -> None:
     assert "All 1,641 points of bottom" in left_out
     assert "rounded to 2 cm" in left_out
     assert "The true seabed is not here." in left_out
-    overlay = page.inner_text("#overlay") or page.text_content("#overlay")
+    overlay = page.text_content("#overlay")
     assert "m across the page" in overlay
     assert overlay.endswith("N")
 
