@@ -38,7 +38,7 @@ def made_cloud(*, frames: int = FRAMES, rows: int = ROWS, columns: int = COLUMNS
     x = 1.6 * (columns * frame + column) + lot.normal(0.0, 0.05, n)
     y = 1.6 * row + lot.normal(0.0, 0.05, n)
     true = 1.0 - 10.0 * x / (1.6 * columns * frames) + 0.3 * np.sin(y / 6.0)
-    error = lot.normal(0.01, 0.05, n)
+    error, scatter = lot.normal(0.01, 0.05, n), lot.lognormal(0.0, 0.2, n)
     classes = np.where(true > LEVEL, PointClass.GROUND, PointClass.BATHYMETRIC)
     classes[::20] = PointClass.NO_BOTTOM_FOUND
     z = np.where(classes == PointClass.NO_BOTTOM_FOUND, LEVEL, true + error)
@@ -55,7 +55,7 @@ def made_cloud(*, frames: int = FRAMES, rows: int = ROWS, columns: int = COLUMNS
         true_surface=np.column_stack([x, y, np.full(n, LEVEL)]),
         true_normal=np.tile(np.float32([0.0, 0.0, 1.0]), (n, 1)),
         water_path=np.maximum(LEVEL - true, 0.0).astype(np.float32),
-        tvu=np.where(echo, 0.1 + 0.01 * np.abs(true), np.nan).astype(np.float32),
+        tvu=np.where(echo, (0.1 + 0.01 * np.abs(true)) * scatter, np.nan).astype(np.float32),
         thu=np.where(echo, 1.0, np.nan).astype(np.float32),
         cause=np.where(echo, Cause.RANGE_NOISE, Cause.NONE).astype(np.uint8),
         surface_elevation=np.full(n, LEVEL),
@@ -64,7 +64,7 @@ def made_cloud(*, frames: int = FRAMES, rows: int = ROWS, columns: int = COLUMNS
         time=frame.astype(np.float64),
         depth=LEVEL - z,
         counts=np.where(echo, 400.0, 0.0).astype(np.float32),
-        snr=np.where(echo, 20.0 + 5.0 * true, 0.0).astype(np.float32),
+        snr=np.where(echo, np.maximum(70.0 + 5.0 * true, 5.0) * scatter, 0.0).astype(np.float32),
         frame=frame.astype(np.uint32),
         line=(frame // (frames // 2)).astype(np.uint16),
         row=row.astype(np.uint16),

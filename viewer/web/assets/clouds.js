@@ -8,11 +8,12 @@ void main() {
   gl_PointSize = clamp(metres * pixelsPerMetre, leastPixels, 60.0);
 }`;
 const DISC = `
+uniform float opacity;
 varying vec3 shade;
 void main() {
   vec2 place = 2.0 * gl_PointCoord - 1.0;
   if (dot(place, place) > 1.0) discard;
-  gl_FragColor = vec4(shade, 1.0);
+  gl_FragColor = vec4(shade, opacity);
 }`;
 const RING = `
 varying vec3 shade;
@@ -30,7 +31,7 @@ void main() {
 }`;
 
 function dotMaterial(fragmentShader, more = {}) {
-  const uniforms = { metres: { value: 0 }, pixelsPerMetre: { value: 1 }, leastPixels: { value: 2 } };
+  const uniforms = { metres: { value: 0 }, pixelsPerMetre: { value: 1 }, leastPixels: { value: 2 }, opacity: { value: 1 } };
   return new THREE.ShaderMaterial({ vertexShader: VERTEX, fragmentShader, uniforms, ...more });
 }
 

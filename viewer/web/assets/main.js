@@ -4,8 +4,10 @@ const FOUND_COLOUR = "#ffffff";
 const MISSED_COLOUR = "#d55e00";
 const CHOSEN_COLOUR = "#e6007a";
 const POINTED_COLOUR = "#1f2b33";
+const VEIL = 0.3;
 const MARK_PIXELS = 7;
 const CHOSEN_PIXELS = 19;
+const POINT_PIXELS = 15;
 const CLICK_PIXELS = 4;
 
 /** The page: its data, its view, and what the controls do. */
@@ -51,7 +53,8 @@ class App {
 
   addPlain(name, columns, colour) {
     const places = placesOf(columns, this.data.clouds[name].places, this.shift);
-    const cloud = dots(places, plain(columns.x.length, colour), dotMaterial(DISC));
+    const cloud = dots(places, plain(columns.x.length, colour), dotMaterial(DISC, { transparent: true, depthWrite: false }));
+    cloud.material.uniforms.opacity.value = VEIL;
     this.shown[name] = cloud;
     this.view.upright.add(cloud);
     if (columns.x.length === 0) disable(`show-${name}`);
@@ -99,7 +102,9 @@ class App {
   size() {
     const metres = this.data.spacing * 2 ** Number(element("size").value);
     element("size-told").textContent = `${metres.toPrecision(2)} m`;
-    for (const cloud of [this.cloud, this.shown.surface, this.shown.other]) cloud.material.uniforms.metres.value = metres;
+    for (const cloud of [this.cloud, this.shown.surface, this.shown.other]) {
+      cloud.material.uniforms.metres.value = metres * (cloud === this.cloud ? 1 : 0.5);
+    }
     if (this.shown.marks) this.shown.marks.material.uniforms.leastPixels.value = MARK_PIXELS * window.devicePixelRatio;
     this.view.draw();
   }
@@ -137,9 +142,9 @@ class App {
   }
 
   /** Say what lies at a place of the page, and show the nearest waveform. */
-  pick(place) {
-    const mark = this.shown.marks?.visible ? this.view.nearest(this.shown.marks, place, 1.5 * MARK_PIXELS) : -1;
-    const point = this.view.nearest(this.cloud, place, 15);
+  pick(place, within = POINT_PIXELS) {
+    const mark = this.shown.marks?.visible ? this.view.nearest(this.shown.marks, place, MARK_PIXELS) : -1;
+    const point = this.view.nearest(this.cloud, place, within);
     if (mark < 0 && point < 0) return;
     if (point >= 0) this.showPoint(point);
     if (mark >= 0) this.showMark(mark);
@@ -155,7 +160,7 @@ class App {
 
   pickMiddle() {
     const { clientWidth, clientHeight } = this.view.canvas;
-    this.pick([clientWidth / 2, clientHeight / 2]);
+    this.pick([clientWidth / 2, clientHeight / 2], Infinity);
   }
 
   pointWords(point) {
