@@ -7,6 +7,7 @@ const POINTED_COLOUR = "#1f2b33";
 const VEIL = 0.3;
 const MARK_PIXELS = 7;
 const CHOSEN_PIXELS = 19;
+const POINTED_PIXELS = 11;
 const POINT_PIXELS = 15;
 const CLICK_PIXELS = 4;
 
@@ -47,7 +48,7 @@ class App {
       pixel: columns.pixel,
     };
     this.cloud = dots(this.places, plain(columns.x.length, NO_VALUE), dotMaterial(DISC));
-    this.pointed = newCircle(POINTED_COLOUR);
+    this.pointed = newCircle(POINTED_COLOUR, POINTED_PIXELS);
     this.view.upright.add(this.cloud, this.pointed);
   }
 
@@ -84,7 +85,7 @@ class App {
     this.frames.marks = pixels.map(({ frame }) => frame);
     this.shown.marks = dots(places, colours, material);
     this.shown.marks.renderOrder = 1;
-    this.chosen = newCircle(CHOSEN_COLOUR);
+    this.chosen = newCircle(CHOSEN_COLOUR, CHOSEN_PIXELS);
     this.view.upright.add(this.shown.marks, this.chosen);
     showKey();
   }
@@ -144,11 +145,27 @@ class App {
   /** Say what lies at a place of the page, and show the nearest waveform. */
   pick(place, within = POINT_PIXELS) {
     const mark = this.shown.marks?.visible ? this.view.nearest(this.shown.marks, place, MARK_PIXELS) : -1;
-    const point = this.view.nearest(this.cloud, place, within);
+    const point = mark < 0 ? this.view.nearest(this.cloud, place, within) : this.pointOf(mark);
     if (mark < 0 && point < 0) return;
     if (point >= 0) this.showPoint(point);
+    else this.hidePoint();
     if (mark >= 0) this.showMark(mark);
     else if (this.waveforms) this.showNearestMark(point);
+  }
+
+  /** The bottom point of a marked pixel, -1 where there is none. */
+  pointOf(mark) {
+    const { frame, row, column } = this.data.waveforms.pixels[mark];
+    const pixel = row * this.data.clouds.bottom.pixelColumns + column;
+    const { codes, pixel: pixels } = this.bottom;
+    const start = firstFrom(codes.frame, frame);
+    const found = pixels.subarray(start, firstFrom(codes.frame, frame + 1)).indexOf(pixel);
+    return found < 0 ? -1 : start + found;
+  }
+
+  hidePoint() {
+    element("picked").hidden = true;
+    this.pointed.visible = false;
   }
 
   showPoint(point) {
@@ -208,13 +225,15 @@ class App {
   }
 
   stepMark(step) {
-    if (this.waveforms) this.showMark(this.waveforms.step(step));
+    if (!this.waveforms) return;
+    this.hidePoint();
+    this.showMark(this.waveforms.step(step));
   }
 
   closeWaveform() {
     this.waveforms?.hide();
-    for (const ring of [this.chosen, this.pointed]) if (ring) ring.visible = false;
-    element("picked").hidden = true;
+    if (this.chosen) this.chosen.visible = false;
+    this.hidePoint();
     this.view.resize();
   }
 
@@ -230,9 +249,9 @@ class App {
 }
 
 /** A circle about one place, hidden until it has one. */
-function newCircle(colour) {
+function newCircle(colour, pixels) {
   const made = dots(new Float32Array(3), plain(1, colour), dotMaterial(CIRCLE, { depthTest: false, transparent: true }));
-  made.material.uniforms.leastPixels.value = CHOSEN_PIXELS * window.devicePixelRatio;
+  made.material.uniforms.leastPixels.value = pixels * window.devicePixelRatio;
   made.renderOrder = 2;
   made.visible = false;
   return made;
