@@ -25,7 +25,7 @@ class Waveforms {
     element("waveform-title").textContent =
       `${picked}Frame ${pixel.frame}, row ${pixel.row}, column ${pixel.column}: ${pixel.outcome}`;
     this.draw();
-    element("numbers").replaceChildren(...numbersOf(pixel).flatMap(([term, words]) => [
+    element("numbers").replaceChildren(...numbersOf(pixel, this.pulses).flatMap(([term, words]) => [
       make("dt", { textContent: term }), make("dd", { textContent: words })]));
   }
 
@@ -151,7 +151,7 @@ function showKey() {
   element("key").replaceChildren(...entries, "band: Monte Carlo standard error");
 }
 
-function numbersOf(pixel) {
+function numbersOf(pixel, pulses) {
   const metres = (value, digits = 3) => (value === null ? "none" : `${value.toFixed(digits)} m`);
   const time = (value) => (value === null ? "none" : `${value.toFixed(2)} ns`);
   return [
@@ -165,6 +165,7 @@ function numbersOf(pixel) {
     ["bottom, true", time(pixel.trueBottom)],
     ["bottom, ranged", time(pixel.foundBottom)],
     ["background in a bin", pixel.background.toPrecision(3)],
+    ["pulses of the frame", String(pulses)],
     ["bin", `${pixel.binWidth.toFixed(3)} ns`],
   ];
 }
