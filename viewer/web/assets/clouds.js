@@ -130,4 +130,4 @@ void main() {
 }`;
 const SHADED = `
 varying float light;
-void main() { gl_FragColor = vec4(light * vec3(0.86, 0.82, 0.74), 1.0); }`;
+void main() { gl_FragColor = vec4(light * vec3(0.80, 0.83, 0.87), 1.0); }`;

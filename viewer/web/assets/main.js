@@ -4,6 +4,7 @@ const FOUND_COLOUR = "#ffffff";
 const MISSED_COLOUR = "#d55e00";
 const CHOSEN_COLOUR = "#e6007a";
 const POINTED_COLOUR = "#1f2b33";
+const COVER = 1.25;
 const VEIL = 0.3;
 const MARK_PIXELS = 7;
 const CHOSEN_PIXELS = 19;
@@ -73,6 +74,7 @@ class App {
     const { waveforms } = this.data;
     if (!waveforms) {
       disable("next-mark");
+      element("marks-words").hidden = true;
       return disable("show-marks");
     }
     this.waveforms = new Waveforms(waveforms, await unpacked(waveforms.curves));
@@ -101,7 +103,7 @@ class App {
   }
 
   size() {
-    const metres = this.data.spacing * 2 ** Number(element("size").value);
+    const metres = COVER * this.data.spacing * 2 ** Number(element("size").value);
     element("size-told").textContent = `${metres.toPrecision(2)} m`;
     for (const cloud of [this.cloud, this.shown.surface, this.shown.other]) {
       cloud.material.uniforms.metres.value = metres * (cloud === this.cloud ? 1 : 0.5);
