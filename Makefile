@@ -5,9 +5,9 @@ DEMO := runs/demo
 FLY := $(BIN)/bathyflash run scenarios/measured-seabed.toml -o $(DEMO)
 OTHER_RUN := 5
 
-SLOW := bad_input faults mutants physics regression scale scenarios statistics unit
+SLOW := bad_input faults mutants physics regression scale scenarios statistics unit web
 
-.PHONY: help venv libraries demo test slow bench check format $(SLOW:%=slow-%)
+.PHONY: help venv libraries chromium demo test slow bench check format web-bundle $(SLOW:%=slow-%)
 
 help:
 	@echo "make venv    create .venv with all libraries"
@@ -16,6 +16,7 @@ help:
 	@echo "make test    check, then all tests but the slow ones"
 	@echo "make slow    the slow tests; one part alone: make slow-NAME, $(SLOW)"
 	@echo "make bench   how fast engine, kernels and products are: nothing else should run"
+	@echo "make web-bundle  build the three.js of the web page anew with npm, and compare"
 	@echo "make format  bring the code into its format"
 
 venv: $(READY)
@@ -26,6 +27,9 @@ $(READY): requirements.lock pyproject.toml tools/create_environment.sh
 
 libraries:
 	@tools/system_libraries.sh
+
+chromium:
+	@tools/chromium.sh
 
 # A demo of older code is flown anew.
 demo: libraries $(READY)
@@ -39,7 +43,7 @@ check: $(READY)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-test: libraries check
+test: libraries chromium check
 	$(BIN)/python -m pytest -m "not slow" --numprocesses=auto --maxprocesses=4 --dist=loadfile
 
 slow: $(SLOW:%=slow-%)
@@ -55,3 +59,6 @@ bench: $(READY)
 format: $(READY)
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
+
+web-bundle:
+	@tools/web_bundle/rebuild.sh

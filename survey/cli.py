@@ -257,14 +257,44 @@ def scenarios() -> None:
 @app.command()
 def view(
     folder: Annotated[Path, typer.Argument(metavar="RUN", help="A run folder.")],
-    screenshot: Annotated[Path, typer.Option(metavar="FILE", help="The picture to write, PNG.")],
+    screenshot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="The picture to write, PNG.")
+    ] = None,
+    web: Annotated[
+        Path | None, typer.Option(metavar="FILE.html", help="A page for any browser, one file.")
+    ] = None,
+    points: Annotated[
+        int, typer.Option(min=1, help="At most so many bottom points on the page.")
+    ] = 2_000_000,
+    pixels: Annotated[
+        int | None,
+        typer.Option(
+            "--waveforms",
+            min=0,
+            metavar="N",
+            help="Pixels whose waveforms the page shows; 64 a frame flown again. [512]",
+        ),
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing but errors.")] = False,
 ) -> None:
-    """Draw a finished run: seabed, water surface and flight."""
-    from survey.errors import UserError
-    from viewer.screenshot import screenshot as draw
+    """Draw a finished run, seabed, water surface and flight: a picture, or a page to turn it in."""
+    from survey.console import watching
+    from survey.errors import OtherRunError, UserError
 
+    if screenshot is None and web is None:
+        raise UserError("nothing to draw. Name a picture with --screenshot, a page with --web")
     try:
-        draw(folder, screenshot)
+        if screenshot is not None:
+            from viewer.screenshot import screenshot as draw
+
+            draw(folder, screenshot)
+        if web is not None:
+            from viewer.web.make import make_page
+
+            with watching(sys.stdout, quiet=quiet) as watcher:
+                make_page(folder, web, points=points, pixels=pixels, watch=watcher)
+    except OtherRunError:
+        raise
     except (ValueError, RuntimeError) as fault:
         raise UserError(str(fault)) from fault
 

@@ -45,6 +45,23 @@ def solid_positions(cloud: PointCloud) -> FloatArray:
     return np.asarray(cloud.position[np.isin(cloud.classification, SOLID_CLASSES)])
 
 
+def median_spacing(places: FloatArray) -> float:
+    """Return the median distance of places (n, 2) to their fourth neighbours [m]; 1 if n < 5.
+
+    Examples
+    --------
+    >>> grid = np.stack(np.meshgrid(np.arange(9.0), np.arange(9.0)), axis=-1)
+    >>> median_spacing(0.5 * grid.reshape(-1, 2))
+    0.5
+    """
+    from scipy.spatial import cKDTree
+
+    if len(places) <= NEIGHBOURS:
+        return 1.0
+    distances, _ = cKDTree(places).query(places, k=[NEIGHBOURS + 1])
+    return max(float(np.median(distances)), 1e-3)
+
+
 def bottom_points(
     cloud: PointCloud, *, water_level: float, exaggeration: float
 ) -> pyvista.PolyData:
@@ -66,7 +83,7 @@ def bottom_surface(
     ProductError
         If there is no such point or no mesh can be made of them.
     """
-    cell_size = CELLS_PER_SPACING * _spacing(cloud)
+    cell_size = CELLS_PER_SPACING * median_spacing(solid_positions(cloud)[:, :2])
     grid = grid_elevation(cloud, map_frame, cell_size=cell_size)
     vertices, faces = grid_surface(grid, map_frame)
     return _mesh(vertices, faces, water_level, exaggeration)
@@ -168,16 +185,6 @@ def sea_sheet(cloud: PointCloud, *, water_level: float) -> pyvista.PolyData:
     hull = cloud.position[ConvexHull(cloud.position[:, :2]).vertices]
     places = np.column_stack([hull[:, :2], np.full(len(hull), water_level)])
     return pyvista.PolyData(places, faces=np.append(len(hull), np.arange(len(hull))))
-
-
-def _spacing(cloud: PointCloud) -> float:
-    from scipy.spatial import cKDTree
-
-    solid = solid_positions(cloud)[:, :2]
-    if len(solid) <= NEIGHBOURS:
-        return 1.0
-    distances, _ = cKDTree(solid).query(solid, k=[NEIGHBOURS + 1])
-    return max(float(np.median(distances)), 1e-3)
 
 
 def _points(places: FloatArray, water_level: float, exaggeration: float) -> pyvista.PolyData:
