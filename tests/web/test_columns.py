@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as some
 from numpy.typing import NDArray
 
@@ -31,6 +31,7 @@ def unpacked(table: dict[str, Any]) -> dict[str, NDArray[np.int64]]:
     return found
 
 
+@settings(max_examples=40)
 @given(NUMBERS)
 def test_any_whole_numbers_come_back(values: list[int]) -> None:
     table = packed({"a": np.array(values, np.int64), "b": np.zeros(len(values), np.uint8)})

@@ -22,6 +22,7 @@ from survey.scenario.load import load_scenario
 from survey.scenario.toml_text import to_toml
 from viewer.web import make
 from viewer.web.make import make_page
+from viewer.web.marks import marked_pixels
 from viewer.web.waveforms import waveforms
 
 SMALL: dict[str, Any] = {
@@ -101,6 +102,12 @@ def test_they_are_those_of_the_frames_flown_again(folder: Path, shown: dict[str,
     assert pixel["trueBottom"] == pytest.approx(float(true.true_bottom_time) * 1e9, rel=1e-5)
     in_water = (pixel["trueBottom"] - pixel["trueSurface"]) * pixel["metresPerNs"]
     assert in_water == pytest.approx(pixel["trueDepth"], abs=0.3)
+
+
+def test_more_frames_are_flown_where_one_has_too_few_pixels(folder: Path) -> None:
+    frames = FlownRun.open(folder).whole
+    found = marked_pixels(folder, frames, at_least=40)
+    assert [(mark.frame, len(mark.row)) for mark in found] == [(0, 20), (1, 20)]
 
 
 def test_the_page_that_is_tested_has_the_same_parts(

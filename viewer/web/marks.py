@@ -45,11 +45,11 @@ def marked_pixels(folder: Path, frames: tuple[int, ...], *, at_least: int) -> li
     frames : tuple of int
         Those of its frames that are whole.
     at_least : int
-        Pixels; 64 a frame are taken.
+        Pixels; 64 a frame are taken, or all of a smaller camera.
     """
     looked_at = spread(np.array(frames), CANDIDATES)
     outcomes = [read_frame(frame_path(folder, int(f))).record.outcome for f in looked_at]
-    wanted = -(-at_least // PIXELS_A_FRAME)
+    wanted = -(-at_least // min(PIXELS_A_FRAME, outcomes[0].size))
     chosen = telling_frames(np.stack([_counts(outcome) for outcome in outcomes]), wanted)
     each = -(-at_least // len(chosen))
     return [
