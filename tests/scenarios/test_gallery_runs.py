@@ -215,6 +215,7 @@ def test_too_deep_shows_nothing() -> None:
     assert share(PointCloud.concatenate(clouds), *BOTTOM) < 3e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("known", [False, True])
 def test_turbid_layer_is_a_false_floor_or_a_hole_over_the_troughs(known: bool) -> None:
     """At the scenario's own work: with less the layer's echo is within its Monte Carlo error."""

@@ -26,6 +26,10 @@ from survey.scenario.scenario import Scenario
 from survey.scenario.toml_text import to_toml
 from survey.sensor.detector import Readings
 
+FIGURES = (
+    *("depth", "holes", "errors", "waveform", "failures", "error-histogram"),
+    *("depth-histogram", "error-by-depth", "detection"),
+)
 PRODUCTS = {
     *("scenario.toml", "manifest.json", "journal.jsonl", "trajectory.csv", "bottom.laz"),
     *("water_surface.laz", "bottom.ply", "water_surface.ply", "bathymetry.tif", "bathymetry.glb"),
@@ -90,7 +94,7 @@ def test_a_mission_leaves_every_product_and_finds_the_seabed(
     log = Log()
     run = fly(small, tmp_path / "run", workers=2, watch=log)
     files = {p.relative_to(run).as_posix() for p in run.rglob("*") if p.is_file()}
-    assert files == PRODUCTS
+    assert files == PRODUCTS | {f"figures/{name}.png" for name in FIGURES}
     found = metrics(run)
     assert found["frames"] == 3
     assert found["points_bottom"] > 250
@@ -105,6 +109,7 @@ def test_a_mission_leaves_every_product_and_finds_the_seabed(
     assert "<h2>Verdict</h2>" in (run / "report.html").read_text()
 
 
+@pytest.mark.slow
 def test_same_bytes_for_any_workers_any_stops_and_any_damage(
     small: Scenario, tmp_path: Path
 ) -> None:

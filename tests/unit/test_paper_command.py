@@ -93,6 +93,7 @@ def test_single_element(found):
         assert reached["matrix"] > reached["single_equal_energy_per_area"]
 
 
+@pytest.mark.slow
 def test_again_the_same_bytes_and_others_files_stay(made, tmp_path):
     """Over earlier results beside another file, on one thread."""
     folder, _ = made
@@ -115,6 +116,7 @@ def test_json_alone_on_standard_output(tmp_path, monkeypatch):
     assert "light of P02" in done.stderr
 
 
+@pytest.mark.slow
 def test_flights_join_the_results(tmp_path, monkeypatch):
     """By c z of the flooding matrix; what they reach comes on the screen and into paper.json."""
     row = dict.fromkeys(("snr_depth_m", "run_depth_m", "found_fraction"), 0.5)
