@@ -243,6 +243,7 @@ def fast_engine(water: Water) -> Engine:
     )
 
 
+@pytest.mark.slow
 def test_both_engines_give_the_same_light():
     """Column and bottom of the whole frame: 3 %, in bands of 10 ns 4 %, at three standard errors.
 

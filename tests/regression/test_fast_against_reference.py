@@ -73,7 +73,7 @@ def assert_equivalent(fast: np.ndarray, stored: dict[str, np.ndarray]) -> None:
         assert off + QUANTILE * spread < TOLERANCE, (origin, "all", off, spread)
 
 
-@pytest.mark.parametrize("water", reference.WATERS)
+@pytest.mark.parametrize("water", ["coastal", pytest.param("layers", marks=pytest.mark.slow)])
 def test_fast_engine_equals_reference_engine(water):
     """Bottom at 10 m under coastal water and under three layers, bands of 10 ns, within 2 %."""
     assert_equivalent(fast_bands(water), stored(water))

@@ -138,6 +138,7 @@ def test_same_bytes_for_any_workers_any_stops_and_any_damage(
     assert products(parts) == wanted
 
 
+@pytest.mark.slow
 def test_another_seed_is_another_survey(small: Scenario, tmp_path: Path) -> None:
     runs = [
         fly(small.replace(**{"mission.seed": seed}), tmp_path / str(seed), frames=range(1))
