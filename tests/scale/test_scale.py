@@ -114,13 +114,18 @@ def seconds(act: Callable[[], object]) -> float:
     return time.perf_counter() - start
 
 
+@pytest.fixture(scope="module")
+def _idle_cores() -> None:
+    if (os.cpu_count() or 1) < 2 or os.getloadavg()[0] > 0.5:
+        pytest.skip("needs two idle cores")
+
+
 @pytest.mark.slow
 @pytest.mark.timeout(900)
+@pytest.mark.usefixtures("_idle_cores")
 @pytest.mark.parametrize("kind", [Threads, Processes])
 def test_two_workers_fly_almost_twice_as_many_frames(kind: Callable[..., Crew]) -> None:
     """Of full size; starting the workers counts."""
-    if (os.cpu_count() or 1) < 2 or os.getloadavg()[0] > 0.5:
-        pytest.skip("needs two idle cores")
     mission = prepare(load_scenario("sandbar"))
     mission.scattering()
 
