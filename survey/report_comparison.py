@@ -172,18 +172,22 @@ def _difference(a: FinishedReport, b: FinishedReport) -> ElevationMap | None:
 
 
 def _grid(file: Path) -> tuple[ElevationMap, str]:
-    """Read the elevations, of a large map every so many cells."""
+    """Read the elevations; of a large map those of cells whose number on the lattice of all maps is
+    a multiple of some step, so that two maps of one step have the same cells.
+    """
     import rasterio
 
     with rasterio.open(file) as raster:
         step = max(1, -(-max(raster.shape) // MOST_PICTURE_CELLS))
-        elevation = raster.read(1).astype(np.float64)[::step, ::step]
-        transform, crs = raster.transform, raster.crs.to_string()
+        side, west, north = raster.transform.a, raster.transform.c, raster.transform.f
+        row, column = round(north / side) % step, -round(west / side) % step
+        elevation = raster.read(1)[row::step, column::step].astype(np.float64)
+        crs = raster.crs.to_string()
     rows, columns = elevation.shape
     cells = CellGrid(
-        west=transform.c,
-        north=transform.f,
-        cell_size=transform.a * step,
+        west=west + column * side,
+        north=north - row * side,
+        cell_size=side * step,
         rows=rows,
         columns=columns,
     )

@@ -11,6 +11,7 @@ from scipy.constants import speed_of_light
 
 from survey.cloud.noise import gate_sums
 from survey.cloud.points import Outcome
+from survey.products.report.curves import GREY, ORIGINS
 from survey.products.writing import write_whole
 
 if TYPE_CHECKING:
@@ -20,9 +21,8 @@ if TYPE_CHECKING:
 DOTS_PER_INCH = 130
 NANO = 1e-9
 LEAST_SHOWN = 1e-3  # of the strongest light of the background's bin
-COLOURS = {"surface": "#0072b2", "column": "#009e73", "bottom": "#d55e00", "background": "#7f7f7f"}
-COUNTS, TRUTH = "#303030", "#000000"
-"""Okabe and Ito (2008), told apart by the colour-blind."""
+COLOURS = ORIGINS | {"background": GREY}
+COUNTS = "#303030"
 
 
 def draw(path: Path, pixel: xarray.Dataset) -> None:

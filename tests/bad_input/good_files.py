@@ -22,24 +22,11 @@ from survey.flight.files.sbet_file import sbet_bytes
 from survey.flight.track import Track
 from survey.scenario.scenario import with_changes
 from survey.scenario.toml_text import to_toml
+from tests.small_scenario import small_tables
 
 EPSG = 25832
 EAST, NORTH = 500250.0, 6000750.0
-BASE: dict[str, Any] = {
-    "mission": {"title": "a test"},
-    "flight": {
-        "start_easting_m": EAST,
-        "start_northing_m": NORTH,
-        "heading_deg": 90.0,
-        "frames_per_line": 2,
-    },
-    "receiver": {"aperture_radius_m": 0.005, "filter_width_nm": 1.0},
-    "detector": {"quantum_efficiency": 0.2, "dark_count_rate_hz": 1.0e4},
-    "water": {"type": "coastal"},
-    "surface": {"water_level_m": 0.5},
-    "seabed": {"kind": "plane", "depth_m": 10.0, "margin_m": 20.0},
-}
-"""A small sound scenario, only what must be given."""
+BASE = small_tables(**{"seabed.margin_m": 20.0})
 STATED_WATER = {"absorption_per_m": 0.1, "scattering_per_m": 0.3}
 
 

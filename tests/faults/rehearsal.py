@@ -18,25 +18,18 @@ from survey.crew.threads import Threads
 from survey.exit_status import explain
 from survey.preparation import Mission
 from survey.scenario.scenario import Scenario
+from tests.small_scenario import SLOPE, small_tables
 
-TABLES: dict[str, Any] = {
-    "mission": {"title": "a test"},
-    "flight": {
-        "start_easting_m": 500250.0,
-        "start_northing_m": 6000750.0,
-        "heading_deg": 90.0,
-        "frames_per_line": 4,
-        "speed_m_s": 20.0,
-    },
-    "camera": {"rows": 6, "columns": 8},
-    "receiver": {"aperture_radius_m": 0.005, "filter_width_nm": 1.0},
-    "detector": {"quantum_efficiency": 0.2, "dark_count_rate_hz": 1.0e4},
-    "water": {"type": "coastal"},
-    "surface": {"water_level_m": 0.5},
-    "seabed": {"kind": "slope", "depth_m": 3.0, "slope_deg": 3.0, "downhill_deg": 90.0},
-    "transport": {"walks_per_pixel": 16},
-    "processing": {"correct_scattering": False},
-}
+TABLES = small_tables(
+    **{
+        "flight.frames_per_line": 4,
+        "flight.speed_m_s": 20.0,
+        "camera": {"rows": 6, "columns": 8},
+        "seabed": SLOPE,
+        "transport.walks_per_pixel": 16,
+        "processing.correct_scattering": False,
+    }
+)
 DIFFERS_BY_RUN = {"performance.json", "journal.jsonl", "log.txt"}
 ONE = Threads(workers=1)
 

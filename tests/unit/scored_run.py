@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -19,21 +18,17 @@ from survey.run_folder import RunFolder
 from survey.scenario import components
 from survey.scenario.scenario import Scenario
 from terrain.seabed import Seabed
+from tests.small_scenario import SLOPE, small_tables
 
-TABLES: dict[str, Any] = {
-    "mission": {"title": "a benchmark", "seed": 7},
-    "flight": {
-        **{"start_easting_m": 500250.0, "start_northing_m": 6000750.0, "heading_deg": 90.0},
-        **{"frames_per_line": 2, "speed_m_s": 20.0},
-    },
-    "camera": {"rows": 8, "columns": 16},
-    "receiver": {"aperture_radius_m": 0.005, "filter_width_nm": 1.0},
-    "detector": {"quantum_efficiency": 0.2, "dark_count_rate_hz": 1.0e4},
-    "water": {"type": "coastal"},
-    "surface": {"water_level_m": 0.5},
-    "seabed": {"kind": "slope", "depth_m": 3.0, "slope_deg": 3.0, "downhill_deg": 90.0},
-    "transport": {"walks_per_pixel": 16},
-}
+TABLES = small_tables(
+    **{
+        "mission": {"title": "a benchmark", "seed": 7},
+        "flight.speed_m_s": 20.0,
+        "camera": {"rows": 8, "columns": 16},
+        "seabed": SLOPE,
+        "transport.walks_per_pixel": 16,
+    }
+)
 
 
 def make_run(folder: Path, some: PointCloud) -> Path:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from survey import report_comparison
 from survey.cli import app
 from survey.products.cells import CellGrid
 from survey.products.grids import ElevationGrid
@@ -88,6 +89,28 @@ def test_runs_on_other_cells_have_no_map_of_differences(
     write_bathymetry_tif(runs[1] / "bathymetry.tif", grid, frame)
     write_comparison(*runs, tmp_path / "page.html")
     assert "Elevation in" not in (tmp_path / "page.html").read_text()
+
+
+def test_large_maps_are_compared_at_the_same_cells(
+    runs: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every second cell of two maps that begin a cell apart: a slope is no difference."""
+    monkeypatch.setattr(report_comparison, "MOST_PICTURE_CELLS", 4)
+    frame = MapFrame(easting=5e5, northing=6e6, epsg=25832, vertical_epsg=5714)
+    read = []
+    for run, apart in zip(runs, (0.0, 2.0), strict=True):
+        cells = CellGrid(west=5e5 + apart, north=6e6 - apart, cell_size=2.0, rows=6, columns=6)
+        x, y = cells.centres()[..., 0] - 5e5, cells.centres()[..., 1] - 6e6
+        slope = (0.1 * x + 0.03 * y).reshape(cells.shape)
+        grid = ElevationGrid(
+            cells=cells, elevation=slope, density=slope, deviation=slope, uncertainty=slope
+        )
+        write_bathymetry_tif(run / "bathymetry.tif", grid, frame)
+        read.append(report_comparison.FinishedReport.of(run))
+    off = report_comparison._difference(*read)
+    assert off is not None
+    assert off.cells.cell_size == 4.0
+    assert np.nanmax(np.abs(off.elevation)) < 1e-5
 
 
 def test_an_unfinished_run_is_named_with_what_is_missing(

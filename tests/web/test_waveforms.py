@@ -20,27 +20,19 @@ from survey.mission import fly
 from survey.progress import Unwatched
 from survey.scenario.load import load_scenario
 from survey.scenario.toml_text import to_toml
+from tests.small_scenario import small_tables
 from viewer.web import make
 from viewer.web.make import make_page
 from viewer.web.marks import marked_pixels
 from viewer.web.waveforms import waveforms
 
-SMALL: dict[str, Any] = {
-    "mission": {"title": "a test"},
-    "flight": {
-        "start_easting_m": 500250.0,
-        "start_northing_m": 6000750.0,
-        "heading_deg": 90.0,
-        "frames_per_line": 2,
-    },
-    "camera": {"rows": 4, "columns": 8},
-    "receiver": {"aperture_radius_m": 0.005, "filter_width_nm": 1.0},
-    "detector": {"quantum_efficiency": 0.2, "dark_count_rate_hz": 1.0e4},
-    "water": {"type": "coastal"},
-    "surface": {"water_level_m": 0.5},
-    "seabed": {"kind": "plane", "depth_m": 4.0, "substrate": "sand"},
-    "transport": {"walks_per_pixel": 16, "tracks_per_replicate": 128},
-}
+SMALL = small_tables(
+    **{
+        "camera": {"rows": 4, "columns": 8},
+        "seabed": {"kind": "plane", "depth_m": 4.0, "substrate": "sand"},
+        "transport": {"walks_per_pixel": 16, "tracks_per_replicate": 128},
+    }
+)
 
 
 class Listener(Unwatched):

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
 Rows = Sequence[Mapping[str, Any]]
 BLUE, ORANGE, GREEN, GREY = "#0072b2", "#d55e00", "#009e73", "#7f7f7f"
+ORIGINS = {"surface": BLUE, "column": GREEN, "bottom": ORANGE}
+"""Of light, in colours of Okabe and Ito (2008), told apart by the colour-blind."""
+
 COLOURS = (BLUE, ORANGE)
 NANO = 1e-9
 BEFORE, AFTER = 15.0, 40.0  # the surface and the bottom, in a waveform [ns]
@@ -75,7 +78,8 @@ def found_by_strength(runs: Mapping[str, Rows]) -> bytes:
 def waveform(seen: Observation, *, row: int, column: int) -> bytes:
     """Return one pixel's light by origin, its counts, the threshold, what was found and the truth.
 
-    Light is shown as the counts that it makes on average, all pulses of the frame summed.
+    Light is shown as the counts that it makes on average, all pulses of the frame summed. The
+    threshold is that of a gate in the pixel alone; the matched search has others.
     """
     figure, axes = new_figure(height=4.6)
     pixel, noise, light = (row, column), seen.noise, seen.waveforms
@@ -83,7 +87,7 @@ def waveform(seen: Observation, *, row: int, column: int) -> bytes:
     centres = 0.5 * (edges[1:] + edges[:-1])
     axes.stairs(seen.readings.counts[pixel], edges, color="#303030", lw=0.9, label="counts")
     counted = float(noise.bottomless.sum() / noise.bottomless_light.sum())
-    for name, colour in (("surface", BLUE), ("column", GREEN), ("bottom", ORANGE)):
+    for name, colour in ORIGINS.items():
         expected = counted * light.origin(name)[pixel]
         axes.plot(centres, expected, color=colour, lw=1.6, label=f"expected, {name}")
     axes.plot(
@@ -91,7 +95,7 @@ def waveform(seen: Observation, *, row: int, column: int) -> bytes:
         noise.bottom_threshold[pixel] / noise.gate_bins,
         color=GREY,
         ls="--",
-        label="threshold of a gate, a bin's share",
+        label="plain threshold of a gate, a bin's share",
     )
     times = _drawn_times(axes, seen, pixel)
     axes.set_xlim(times.min() - BEFORE, times.max() + AFTER)

@@ -30,8 +30,8 @@ class SamplePixel:
             name="waveform",
             png=waveform(seen, row=self.row, column=self.column),
             words=f"One pixel, frame {self.frame.index}, row {self.row}, column {self.column}: "
-            f"counts, expected light by origin, threshold and echoes over a bottom {depth:.1f} m "
-            "deep. `bathyflash waveforms --pixel` shows any other.",
+            "counts, expected light by origin, the plain threshold and echoes over a bottom "
+            f"{depth:.1f} m deep. `bathyflash waveforms --pixel` shows any other.",
         )
 
 
