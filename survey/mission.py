@@ -37,6 +37,8 @@ from survey.scenario.scenario import Scenario
 from survey.soundness import sound
 from survey.transport.random import COUNTS, chance
 
+COMPILING = "the light engine is compiled first, once for each version: a minute or two"
+
 
 def fly_frame(mission: Mission, frame: Frame) -> FrameResult:
     """Fly one flash and return what a run keeps: points, and the truth beside them."""
@@ -209,6 +211,8 @@ def _fly_missing(
     for index in sorted(chosen & set(run.spoilt)):
         watch.noticed(f"frame {index} is flown again: {run.spoilt[index]}")
     watch.started(len(missing))
+    if missing and not mission.engine.compiled_before():
+        watch.noticed(COMPILING)
     if missing and crew.shares_memory:
         mission.scattering()
     elif missing:

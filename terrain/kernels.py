@@ -56,6 +56,13 @@ def cache_folder() -> Path:
 setattr(numba.config, "CACHE_DIR", str(cache_folder()))  # noqa: B010  # untyped there
 
 
+def compiled_before(compiled: Callable[..., Any]) -> bool:
+    """Return whether the cache holds machine code of a kernel, from an earlier run or this one."""
+    written = compiled.__code__
+    name = f"{Path(written.co_filename).stem}.{compiled.__name__}-{written.co_firstlineno}"
+    return any(cache_folder().glob(f"*/{name}.*.nbi"))
+
+
 def kernel(function: F) -> F:
     """Compile ``function`` without the interpreter lock, cached across runs.
 
@@ -78,13 +85,13 @@ def leaf_kernel(function: F) -> F:
 
 
 def inlined_kernel(function: F) -> F:
-    """Let kernels call ``function``: LLVM copies it into them, as a fused kernel.
+    """Let kernels call ``function``: LLVM copies it into them, as a leaf kernel.
 
     For kernels of many arguments that are called at one place: handing over a few named tuples of
     arrays costs as much as fifty multiplications. Numba's own ``inline`` runs as fast but takes six
     times as long to compile. Python calls the function as it is written.
     """
-    return register_jitable(forceinline=True, **FUSED)(function)
+    return register_jitable(forceinline=True, nogil=True, _nrt=False, **PLAIN)(function)
 
 
 def fused_kernel(function: F) -> F:
@@ -93,3 +100,8 @@ def fused_kernel(function: F) -> F:
     Rounding differs in the last digit from that of two steps, alike in every run on one machine.
     """
     return cast(F, numba.njit(function, cache=True, **FUSED))
+
+
+def inlined_fused_kernel(function: F) -> F:
+    """Let kernels call ``function``: LLVM copies it into them, as a fused kernel."""
+    return register_jitable(forceinline=True, **FUSED)(function)

@@ -28,7 +28,7 @@ from survey.transport.random import uniform
 from survey.transport.scene import Scene
 from survey.transport.surface import slope_density
 from survey.transport.tracks import Course, Tracks, aside_of
-from terrain.kernels import inlined_kernel
+from terrain.kernels import inlined_fused_kernel
 from terrain.waves.lattice import elevation_and_slopes
 
 TRIED = 4
@@ -49,7 +49,7 @@ class Aim(NamedTuple):
     weight: float
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def aimed(
     scene: Scene,
     layers: Layers,
@@ -100,7 +100,7 @@ def aimed(
     return Aim(taken, facet, 1.0 / (TRIED * share))
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def facet_at(scene: Scene, method: Method, radius: float, angle: float) -> Facet:
     """Return the facet at places from 0 to 1 of the two dimensions of the slopes drawn by."""
     sea, i = scene.drawn, int(angle * method.circle.shape[0])

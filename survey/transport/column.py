@@ -26,7 +26,7 @@ from survey.transport.random import uniform
 from survey.transport.scene import Scene
 from survey.transport.sheet import crest_or_trough
 from survey.transport.tally import COLUMN, Tally, deposit
-from terrain.kernels import inlined_kernel
+from terrain.kernels import inlined_fused_kernel
 
 MANY = 8.0
 """Scatterings of a path from which on not every pair of a point and a leg is joined."""
@@ -34,7 +34,7 @@ FLATTEST = 0.01
 """Least cosine to the vertical of a leg that is taken to cross a depth [1]."""
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def join(
     scene: Scene,
     layers: Layers,
@@ -103,13 +103,13 @@ def join(
     )  # fmt: skip
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def sinking_of(dz: float) -> float:
     """Depth that a leg covers in a metre [1]; none if it is too flat to cross a depth."""
     return abs(dz) if abs(dz) >= FLATTEST else 0.0
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def light_column(
     scene: Scene,
     layers: Layers,

@@ -36,6 +36,7 @@ from survey.transport.waveforms import (
     padded_bins,
     pulse_taps,
 )
+from terrain.kernels import compiled_before
 from terrain.sea_surface import SeaSurface
 from terrain.seabed_grid import elevations_within
 
@@ -119,6 +120,11 @@ class Engine:
         width = receiver.bin_width * self._coarse
         reach = int(np.ceil(PULSE_REACH * laser.pulse_sigma / width)) + 1
         self._coarse_taps = pulse_taps(sigma=laser.pulse_sigma, width=width, pad=reach)
+
+    @staticmethod
+    def compiled_before() -> bool:
+        """Return whether a flash can be flown at once, without a minute of compiling first."""
+        return compiled_before(see_all)
 
     def flash(self, *, pose: Pose, frame: int, time: float = 0.0) -> Waveforms:
         """Return the expected photo-electrons of one flash.

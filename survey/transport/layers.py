@@ -11,7 +11,7 @@ from scipy.constants import speed_of_light
 
 from survey.optics.water import WaterColumn
 from survey.transport.table import value_at
-from terrain.kernels import inlined_kernel, leaf_kernel
+from terrain.kernels import inlined_fused_kernel, leaf_kernel
 
 FloatArray = NDArray[np.float64]
 
@@ -72,7 +72,7 @@ def last_at(sorted_values: FloatArray, value: float) -> int:
     return low
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def free_path(layers: Layers, depth: float, sinking: float, optical: float) -> float:
     """Way from a depth, sinking so much a metre, to the next scattering [m].
 
@@ -106,7 +106,7 @@ def free_path_in_layers(
     return float(max(0.0, (reached - depth) / sinking))
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def crossed(
     layers: Layers,
     coefficient: FloatArray,
@@ -144,20 +144,20 @@ def crossed_layers(
     return float((end - start) / sinking)
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def bend_at(layers: Layers, depth: float, chance: float) -> float:
     """Return 1 - cos of the angle below which a share ``chance`` of all scattering there goes."""
     table = layers.samplers[layers.phase[last_at(layers.tops, depth)]]
     return value_at(table, chance)
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def wide_turn(layers: Layers, depth: float, cosine: float, split_cosine: float) -> float:
     """Return how unlikely a turn is: 1 / density if it is wider than the split [sr], else 0."""
     return 1.0 / density_at(layers, depth, cosine) if cosine < split_cosine else 0.0
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def density_at(layers: Layers, depth: float, cosine: float) -> float:
     """Phase function of the water at a depth, at the cosine of a wide angle [1/sr]."""
     table = layers.densities[layers.phase[last_at(layers.tops, depth)]]

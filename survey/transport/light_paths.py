@@ -42,7 +42,7 @@ from survey.transport.tracks import (
     frame_around,
     mirrored,
 )
-from terrain.kernels import inlined_kernel
+from terrain.kernels import inlined_fused_kernel
 
 CHANCE_BEYOND = 0.25
 ROULETTE_BELOW, ROULETTE_SURVIVAL = 1e-4, 0.1
@@ -65,7 +65,7 @@ class Place(NamedTuple):
     gain: float
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def add_bottom(
     scene: Scene,
     layers: Layers,
@@ -118,7 +118,7 @@ def add_bottom(
     )  # fmt: skip
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def send_light(
     scene: Scene,
     layers: Layers,
@@ -170,7 +170,7 @@ def send_light(
         light_column(scene, layers, optics, method, tally, sight, ray, facet, legs, start, state)
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def follow(
     scene: Scene,
     layers: Layers,

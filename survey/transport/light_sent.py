@@ -20,7 +20,7 @@ from survey.transport.layers import Layers
 from survey.transport.scene import Scene
 from survey.transport.sheet import through_waves
 from survey.transport.tally import Tally
-from terrain.kernels import inlined_kernel
+from terrain.kernels import inlined_fused_kernel
 from terrain.raycast import first_hit
 
 GAP = 1e-3
@@ -77,7 +77,7 @@ class Sent(NamedTuple):
     lift: float
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def light_sent(
     scene: Scene,
     optics: Optics,
@@ -140,14 +140,14 @@ def light_sent(
     return Sent(light * thinned, in_air, deeper, straight, lift)
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def longest_path(scene: Scene, layers: Layers, optics: Optics, sight: Sight) -> float:
     """Path in water [m] after which light to or from a walk comes later than the gate."""
     height = optics.position[2] - scene.waves.highest
     return float((scene.bounds.latest - sight.time - height / speed_of_light) * layers.speed)
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def is_open(
     scene: Scene, tally: Tally, legs: int, last: float, x: float, y: float, level: float
 ) -> bool:

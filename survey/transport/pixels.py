@@ -41,7 +41,7 @@ from survey.transport.tracks import (
     frame_around,
     mirrored,
 )
-from terrain.kernels import fused_kernel, inlined_kernel, leaf_kernel
+from terrain.kernels import fused_kernel, inlined_fused_kernel, leaf_kernel
 from terrain.raycast import first_hit
 
 # Roberts (2018): additive recurrences of low discrepancy in one and two dimensions.
@@ -120,7 +120,7 @@ def facing_normal(
     return nx, ny, nz
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def walk_back(
     scene: Scene,
     layers: Layers,
@@ -234,7 +234,7 @@ def see_land(
     )  # fmt: skip
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def see_bottom(
     scene: Scene,
     layers: Layers,
@@ -299,7 +299,7 @@ def see_bottom(
         turn_back, turn_down = uniform(state), uniform(state)
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def see(
     scene: Scene,
     layers: Layers,

@@ -6,7 +6,7 @@ import math
 
 from survey.transport.scene import Scene
 from survey.transport.surface import slope_density
-from terrain.kernels import inlined_kernel, leaf_kernel
+from terrain.kernels import inlined_fused_kernel, leaf_kernel
 from terrain.waves.lattice import elevation_and_slopes, meets_surface
 
 ASIDE = 1.0
@@ -40,7 +40,7 @@ def sea_under(scene: Scene, x: float, y: float) -> float:
     return elevation - BELOW
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def water_above(
     scene: Scene, x: float, y: float, z: float, dx: float, dy: float, dz: float, length: float
 ) -> tuple[float, float, float]:
@@ -55,7 +55,7 @@ def water_above(
     return meets_surface(scene.waves, x, y, z, dx, dy, dz, length)
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def through_waves(
     scene: Scene, x: float, y: float, slope_x: float, slope_y: float, facet_x: float, facet_y: float
 ) -> tuple[float, float]:

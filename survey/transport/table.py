@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from terrain.kernels import inlined_kernel
+from terrain.kernels import inlined_fused_kernel
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def value_at(table: NDArray[np.float64], part: float) -> float:
     """Value of a table so far along it, 0 to 1, straight between neighbouring entries."""
     place = part * (table.shape[0] - 1)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from terrain.kernels import fused_kernel, inlined_kernel, leaf_kernel
+from terrain.kernels import fused_kernel, inlined_fused_kernel, leaf_kernel
 
 COLUMN, BOTTOM = 0, 1
 LEG = (
@@ -77,7 +77,7 @@ def deposit(tally: Tally, origin: int, batch: int, time: float, photons: float) 
     tally.coarse[batch, origin, int(place + 0.5) // tally.width] += photons
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def note_leg(
     leg: NDArray[np.float64],
     x: float,

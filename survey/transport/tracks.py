@@ -17,7 +17,7 @@ from survey.optics.interface import reflected
 from survey.transport.directions import turned
 from survey.transport.layers import Layers, bend_at, free_path
 from survey.transport.random import TRACKS, exponential, start_stream, uniform
-from terrain.kernels import inlined_kernel, kernel, leaf_kernel
+from terrain.kernels import inlined_fused_kernel, kernel, leaf_kernel
 
 LOST_CHANCE = 0.5
 
@@ -62,7 +62,7 @@ class Frame(NamedTuple):
     cz: float
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def direction_along(
     layers: Layers,
     row: NDArray[np.float32],
@@ -86,7 +86,7 @@ def direction_along(
     )
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def way_to(layers: Layers, depth: float, legs: NDArray[np.float32]) -> tuple[float, float, float]:
     """Path of a track that begins straight down to a depth, and how far aside it is there [m].
 
@@ -201,7 +201,7 @@ def frame_around(
     )  # fmt: skip
 
 
-@inlined_kernel
+@inlined_fused_kernel
 def aside_of(
     layers: Layers,
     tracks: Tracks,

@@ -86,6 +86,18 @@ def less_one(x: float, y: float) -> float:
     return x * y - 1.0
 
 
+@kernels.inlined_kernel
+def inlined_less_one(x: float, y: float) -> float:
+    """Product less 1, copied into the caller."""
+    return x * y - 1.0
+
+
+@kernels.fused_kernel
+def fused_and_inlined_less_one(x: float, y: float) -> tuple[float, float]:
+    """In one step, and what is copied here in two."""
+    return x * y - 1.0, inlined_less_one(x, y)
+
+
 @kernels.fused_kernel
 def fused_less_one(x: float, y: float) -> float:
     """The same, called from a kernel that may multiply and subtract in one step."""
@@ -101,3 +113,18 @@ def test_a_kernel_rounds_alike_whoever_calls_it_first():
     e = 2.0**-30
     fused_less_one(1.0 + e, 1.0 - e)
     assert less_one(1.0 + e, 1.0 - e) == 0.0
+
+
+def test_what_is_copied_into_a_kernel_rounds_by_its_own_rules():
+    e = 2.0**-30
+    one_step, two_steps = fused_and_inlined_less_one(1.0 + e, 1.0 - e)
+    assert two_steps == 0.0
+    assert one_step in (0.0, -(e**2))  # by what the processor has
+    assert inlined_less_one(1.0 + e, 1.0 - e) == 0.0
+
+
+def test_kernels_that_are_compiled_are_known(monkeypatch, tmp_path):
+    less_one(1.0, 1.0)
+    assert kernels.compiled_before(less_one)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert not kernels.compiled_before(less_one)
