@@ -86,7 +86,7 @@ def direction_along(
     )
 
 
-@inlined_fused_kernel
+@leaf_kernel
 def way_to(layers: Layers, depth: float, legs: NDArray[np.float32]) -> tuple[float, float, float]:
     """Path of a track that begins straight down to a depth, and how far aside it is there [m].
 

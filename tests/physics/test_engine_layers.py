@@ -80,13 +80,13 @@ def test_absorbing_layers_dim_the_bottom_like_their_mean(engine_of):
 def test_free_paths_have_the_optical_length_that_was_drawn(sinking, depth):
     """Against coefficients summed up in small steps along the way."""
     layers = kernel_layers(THREE)
-    length = free_path.py_func(layers, depth, sinking, 0.7)
+    length = free_path(layers, depth, sinking, 0.7)
     way = (np.arange(200_000) + 0.5) / 200_000 * length
     layer = np.searchsorted([0.0, 4.0, 5.0], depth + sinking * way, side="right") - 1
     layer = np.maximum(layer, 0)
     assert np.mean(layers.scattering[layer]) * length == pytest.approx(0.7, rel=1e-3)
     for name, to_top in (("scattering", "scattered"), ("absorption", "absorbed")):
-        found = crossed.py_func(
+        found = crossed(
             layers, getattr(layers, name), getattr(layers, to_top), depth, sinking, length
         )
         plain = np.mean(getattr(layers, name)[layer]) * length
@@ -99,7 +99,7 @@ def test_light_turns_by_the_water_where_it_scatters():
     within = np.radians(10.0)
     for depth in (1.0, 4.5, 30.0):
         share = THREE.at(depth).phase_function.fraction_within(within)
-        bend = bend_at.py_func(layers, depth, share)
+        bend = bend_at(layers, depth, share)
         assert bend == pytest.approx(1.0 - np.cos(within), rel=1e-3)
 
 

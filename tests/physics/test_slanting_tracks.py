@@ -76,11 +76,10 @@ def drawn_tracks(along, number):
 def by_the_engine(engine, pose, place, tracks):
     """Return ``exact``'s three numbers by the engine; of the entry the way in air alone."""
     optics = kernel_optics(camera=engine.camera, receiver=engine.receiver, pose=pose)
-    sent = light_sent.py_func
     for track in tracks:
         ray = ray_to(optics, 0.0, INDEX, *place, DEPTH)
         slope = track.last[:2] / -track.last[2]
-        light, in_air, deeper, *_ = sent(
+        light, in_air, deeper, *_ = light_sent(
             engine._scene(pose, 0.0), optics, engine._method, Sight(0, 0, 0.0, 1.0, False), ray,
             *place, DEPTH, *track.end[:2], *slope, Facet(0.0, 0.0, 1.0), 1.0,
         )  # fmt: skip
