@@ -35,9 +35,10 @@ class Scenario:
 
     Parameters
     ----------
-    mission, flight, motion, navigation, laser, camera, receiver, detector, water, surface, seabed,
-    sun, transport, processing, run : Section
-        One for each section of the file, defaults filled in.
+    mission, flight, motion, navigation, laser, camera, receiver, detector : Section
+        Of the file, defaults filled in.
+    water, surface, seabed, sun, transport, processing, run : Section
+        Likewise.
     name : str
         The file's name as it stands in faults.
     folder : Path
