@@ -11,10 +11,10 @@ from typing import Any
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 
-from tools.site.command_reference import command_reference
-from tools.site.formulas import with_formulas
-from tools.site.notebook import notebook_page
-from tools.site.scenario_reference import scenario_reference
+from tools.pages.command_reference import command_reference
+from tools.pages.formulas import with_formulas
+from tools.pages.notebook import notebook_page
+from tools.pages.scenario_reference import scenario_reference
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"

@@ -12,8 +12,8 @@ from survey.exit_status import MEANINGS
 
 HEAD = """# Every command
 
-`bathyflash COMMAND --help` says the same in a terminal. `SCENARIO` is a file, or the name of one that
-comes with the package (`bathyflash scenarios`); `RUN` is a run folder.
+`bathyflash COMMAND --help` says the same in a terminal. `SCENARIO` is a file, or the name of one
+that comes with the package (`bathyflash scenarios`); `RUN` is a run folder.
 """
 
 
@@ -33,11 +33,12 @@ def _section(name: str, command: Any, context: typer.Context) -> Iterator[str]:
     records = [param.get_help_record(context) for param in command.get_params(context)]
     yield from ("| | |", "|---|---|")
     for left, right in filter(None, records):
-        yield f"| `{_cell(left)}` | {_cell(right)} |"
+        yield f"| `{left}` | {_plain(right)} |"
 
 
-def _cell(text: str) -> str:
-    return " ".join(text.split()).replace("|", "\\|").replace("[", "\\[")
+def _plain(text: str) -> str:
+    """Return text whose brackets make no link and whose bars make no cell."""
+    return " ".join(text.split()).replace("[", "\\[").replace("|", "&#124;")
 
 
 def _statuses() -> Iterator[str]:
