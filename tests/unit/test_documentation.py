@@ -17,6 +17,7 @@ import typer
 import survey
 from survey.cli import app
 from survey.scenario import Scenario, ScenarioError
+from survey.scenario.seabed_files import require_readable_files
 from tests.small_scenario import small_tables
 
 ROOT = Path(__file__).parents[2]
@@ -105,3 +106,14 @@ def test_the_python_page_names_what_is_there_and_all_that_is_public() -> None:
         module, name = place.rsplit(".", 1)
         assert getattr(import_module(module), name).__doc__, place
     assert {place.rsplit(".", 1)[1] for place in places} >= set(survey.__all__)
+
+
+@pytest.mark.parametrize(("page", "file"), [("own-water", "cast"), ("own-trajectory", "flight")])
+def test_files_of_the_documents_are_read(page: str, file: str, tmp_path: Path) -> None:
+    shown = FENCE.findall((ROOT / f"docs/{page}.md").read_text(encoding="utf-8"))
+    (text,) = (text for language, text in shown if not language and "," in text.splitlines()[0])
+    (tmp_path / f"{file}.csv").write_text(text, encoding="utf-8")
+    (tables,) = (tomllib.loads(toml) for _, toml in shown if f'"{file}.csv"' in toml)
+    tables.get("flight", {}).pop("legs_s", None)  # of a flight that is longer
+    sound = Scenario.from_tables(completed(tables), name="page", folder=tmp_path)
+    require_readable_files(sound)
