@@ -233,4 +233,14 @@ def _values(about: Mapping[str, Any]) -> str:
 
 
 def _plain(number: float) -> str:
-    return f"{number:g}" if abs(number) < 1e6 else f"{number:.2g}"
+    """Return a bound; large whole ones are powers of two, or one less.
+
+    Examples
+    --------
+    >>> _plain(2**31 - 1), _plain(2**63), _plain(1e8), _plain(0.25)
+    ('2^31 - 1', '2^63', '1e8', '0.25')
+    """
+    if isinstance(number, int) and number >= 2**31 - 1:
+        length = number.bit_length()
+        return f"2^{length} - 1" if number == 2**length - 1 else f"2^{length - 1}"
+    return f"{number:g}".replace("e+0", "e")
