@@ -7,7 +7,7 @@ OTHER_RUN := 5
 
 SLOW := bad_input faults mutants physics regression scale scenarios statistics unit web
 
-.PHONY: help venv libraries chromium demo test slow bench check format web-bundle $(SLOW:%=slow-%)
+.PHONY: help venv libraries chromium demo test slow bench check format site figures web-bundle $(SLOW:%=slow-%)
 
 help:
 	@echo "make venv    create .venv with all libraries"
@@ -16,6 +16,8 @@ help:
 	@echo "make test    check, then all tests but the slow ones"
 	@echo "make slow    the slow tests; one part alone: make slow-NAME, $(SLOW)"
 	@echo "make bench   how fast engine, kernels and products are: nothing else should run"
+	@echo "make site    the documentation as web pages, site/index.html: no network, no server"
+	@echo "make figures draw the figures of the page on validation anew"
 	@echo "make web-bundle  build the three.js of the web page anew with npm, and compare"
 	@echo "make format  bring the code into its format"
 
@@ -59,6 +61,13 @@ bench: $(READY)
 format: $(READY)
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
+
+site: $(READY)
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs --quiet build --strict
+	@echo "pages: site/index.html"
+
+figures: $(READY)
+	$(BIN)/python -m tools.validation_figures
 
 web-bundle:
 	@tools/web_bundle/rebuild.sh

@@ -18,9 +18,11 @@ Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="SECTION.KEY=VALUE", help="Change one value; may be repeated."),
 ]
-
-
+ScenarioName = Annotated[
+    str, typer.Argument(metavar="SCENARIO", help="A scenario file, or a name of the gallery.")
+]
 LARGEST_SEED = 2**63 - 1
+Seed = Annotated[int, typer.Option(min=0, max=LARGEST_SEED, help="Start of the random numbers.")]
 
 
 class Guarded(TyperGroup):
@@ -57,7 +59,7 @@ app = typer.Typer(
 
 @app.command()
 def run(
-    scenario: Annotated[str, typer.Argument(help="A scenario file, or a name of the gallery.")],
+    scenario: ScenarioName,
     output: Annotated[Path, typer.Option("-o", "--output", metavar="RUN", help="Run folder.")],
     workers: Annotated[
         int | None, typer.Option(min=0, help="Frames at once; 0 is one for each core.")
@@ -154,7 +156,7 @@ def check(
 
 @app.command()
 def plan(
-    scenario: Annotated[str, typer.Argument(help="A scenario file, or a name of the gallery.")],
+    scenario: ScenarioName,
     settings: Settings = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, not a table.")] = False,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Map, PNG or SVG.")] = None,
@@ -183,7 +185,7 @@ def plan(
 
 @app.command()
 def effects(
-    scenario: Annotated[str, typer.Argument(help="A scenario file, or a name of the gallery.")],
+    scenario: ScenarioName,
     settings: Settings = None,
     frames: Annotated[
         str | None, typer.Option(metavar="A:B", help="Only these frames, from 0, B excluded.")
@@ -355,10 +357,11 @@ def response(
         ),
     ] = None,
     illumination: Annotated[
-        Literal["flood", "isolated"], typer.Option(help="Who lights a pixel.")
+        Literal["flood", "isolated"],
+        typer.Option(help="Whether light of all pixels or its own alone reaches a pixel."),
     ] = "flood",
     bottom_depth: Annotated[float, typer.Option(metavar="M", help="Depth [m].")] = 20.0,
-    seed: Annotated[int, typer.Option(min=0, max=LARGEST_SEED)] = 1,
+    seed: Seed = 1,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, not a table.")] = False,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="PNG or SVG.")] = None,
 ) -> None:
@@ -391,8 +394,8 @@ def paper(
     work: Annotated[
         float, typer.Option(help="Walks over those of the full computation, 0.01 to 100.")
     ] = 1.0,
-    seed: Annotated[int, typer.Option(min=0, max=LARGEST_SEED)] = 1,
-    threads: Annotated[int, typer.Option(min=0, help="0 is one for each core.")] = 0,
+    seed: Seed = 1,
+    threads: Annotated[int, typer.Option(min=0, help="Threads; 0 is one for each core.")] = 0,
     flights: Annotated[
         bool,
         typer.Option("--flights", help="Also fly its missions into DIR/flights: 15 minutes."),
@@ -433,7 +436,7 @@ def paper(
 
 @app.command()
 def bench(
-    threads: Annotated[int, typer.Option(min=0, help="0 is one for each core.")] = 0,
+    threads: Annotated[int, typer.Option(min=0, help="Threads; 0 is one for each core.")] = 0,
     merit: Annotated[
         bool, typer.Option("--merit", help="Compare with the textbook engine: ten minutes.")
     ] = False,

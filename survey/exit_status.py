@@ -9,6 +9,14 @@ from survey.errors import OtherRunError, UserError
 
 OUR_PACKAGES = {"survey", "terrain", "viewer"}
 DONE, BAD_INPUT, FILE_MISSING, OTHER_RUN, OUR_FAULT, INTERRUPTED = 0, 2, 3, 5, 70, 130
+MEANINGS = {
+    DONE: "done",
+    BAD_INPUT: "bad input: what, where and what to do stand in the message",
+    FILE_MISSING: "a file is missing",
+    OTHER_RUN: "the run folder belongs to another scenario or code",
+    OUR_FAULT: "a fault of ours: please report it with the message",
+    INTERRUPTED: "interrupted; the same command goes on",
+}
 TRACEBACK_VARIABLE = "BATHYFLASH_TRACEBACK"
 REMEDIES: dict[int | None, str] = {
     errno.ENOSPC: "Free some space; the same command goes on from here.",

@@ -20,6 +20,7 @@ class CatalogueDetector(Detector):
     """A detector whose figures may come from the catalogue; keys that are given come first."""
 
     device: Text | None = None
+    """A device of the catalogue, whose figures are the defaults."""
 
     @field_validator("device")
     @classmethod
@@ -42,6 +43,7 @@ class IdealDetector(CatalogueDetector):
 
     kind: Literal["ideal"] = "ideal"
     max_counts_per_bin: IdealRoom = 65_535
+    """Highest count of a bin."""
 
 
 class SpadDetector(CatalogueDetector):
@@ -54,18 +56,32 @@ class SpadDetector(CatalogueDetector):
 
     kind: Literal["spad"] = "spad"
     fill_factor: Fraction = 1.0
+    """Share of the pixel that is active."""
     dead_time_ns: Annotated[float, Field(ge=0.1)]
+    """Time after an avalanche in which the pixel sees nothing."""
     afterpulse_probability: Probability = 0.0
+    """Probability that an avalanche starts another, later one."""
     afterpulse_lifetime_ns: Positive = 50.0
+    """Mean time from the end of the dead time to such a one."""
     crosstalk_probability: Annotated[float, Field(ge=0.0, lt=0.25)] = 0.0
+    """Probability that an avalanche starts one in a given neighbour, of four."""
     timing_jitter_ps: NotNegative = 0.0
+    """Full width at half maximum of a count's scatter in time."""
     max_counts_per_bin: CounterRoom = 65_535
+    """Highest count of a bin."""
     surface_gate_open_ns: float | None = None
+    """When pixels are armed for the surface, after the echo of level water straight below."""
     surface_gate_close_ns: float | None = None
+    """When that gate closes."""
     bottom_gate_open_ns: float | None = None
+    """When pixels are armed for the bottom, after the same echo."""
     bottom_gate_close_ns: float | None = None
+    """When that gate closes."""
     gates_follow_slant: bool = False
+    """Whether the gates come later in slanting pixels, as the water's echo does."""
     surface_pulses: Annotated[int, Field(ge=0)] = 0
+    """Pulses of a frame with the surface gate alone, the others have the bottom's; 0 arms both in
+    all."""
 
     @property
     def gates_ns(self) -> dict[str, tuple[float | None, float | None]]:
@@ -81,10 +97,15 @@ class ApdDetector(CatalogueDetector):
 
     kind: Literal["apd"] = "apd"
     gain: Annotated[float, Field(ge=1.0)]
+    """Mean gain of an avalanche."""
     ionisation_ratio: Annotated[float, Field(ge=0.0, le=1.0)]
+    """McIntyre's k, ionisation by holes over that by electrons."""
     bandwidth_mhz: Positive
+    """Bandwidth of diode and amplifier."""
     amplifier_noise_pa_per_sqrt_hz: NotNegative
+    """Current noise of the amplifier at its input."""
     full_scale_photo_electrons: Positive = 1.0e6
+    """Reading of a bin at which it saturates."""
 
 
 class PmtDetector(CatalogueDetector):
@@ -92,11 +113,17 @@ class PmtDetector(CatalogueDetector):
 
     kind: Literal["pmt"] = "pmt"
     gain: Annotated[float, Field(ge=1.0)] = 1.0e6
+    """Mean gain of the dynodes."""
     secondary_emission: Annotated[float, Field(gt=1.0)] = 5.0
+    """Mean secondary electrons at the first dynode, which set the scatter of pulse heights."""
     rc_ns: Positive
+    """Time constant: pulses are counted while 1/rate is longer, beyond it a current is read."""
     amplifier_noise_pa_per_sqrt_hz: NotNegative = 0.0
+    """Current noise of the amplifier at its input."""
     transit_time_spread_ps: NotNegative = 0.0
+    """Full width at half maximum of a pulse's scatter in time."""
     full_scale_photo_electrons: Positive = 1.0e6
+    """Reading of a bin at which it saturates."""
 
 
 def _with_device(given: Any) -> Any:

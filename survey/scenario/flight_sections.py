@@ -32,14 +32,18 @@ class HeightAt(Section):
     """The height above the water at a place along the heading; straight in between."""
 
     distance_m: Coordinate
+    """Distance along the heading from where the lines begin."""
     height_m: Height
+    """Height above the water level there."""
 
 
 class SpeedAt(Section):
     """The ground speed at a place along the heading; straight in between."""
 
     distance_m: Coordinate
+    """Distance along the heading from where the lines begin."""
     speed_m_s: Positive
+    """Speed over ground there."""
 
 
 class PlannedFlight(Flight):
@@ -51,14 +55,23 @@ class PlannedFlight(Flight):
     """
 
     heading_deg: Bearing
+    """Direction of the first line, from north to the east."""
     sidelap: Overlap = 0.2
+    """Share of the swath that neighbouring lines have in common, at the water."""
     turn: Literal["alternate", "same"] = "alternate"
+    """`alternate` flies every other line back; `same` flies all in one direction."""
     turn_time_s: NotNegative = 60.0
+    """Time between two lines, without `turn_bank_deg`."""
     turn_bank_deg: Bank | None = None
+    """Bank of the turns: their time follows from their way."""
     height_profile: list[HeightAt] = Field(default_factory=list)
+    """Heights at places along the lines, which replace `height_m`."""
     speed_profile: list[SpeedAt] = Field(default_factory=list)
+    """Speeds at places along the lines, which replace `speed_m_s`."""
     wind_speed_m_s: Annotated[float, Field(ge=0.0, le=60.0)] = 0.0
+    """Wind at the aircraft, which turns the nose off the line."""
     wind_from_deg: Bearing = 0.0
+    """Direction from which that wind comes."""
 
     @property
     def heights_m(self) -> tuple[float, float]:
@@ -72,9 +85,13 @@ class LinesFlight(PlannedFlight):
 
     kind: Literal["lines"] = "lines"
     start_easting_m: Coordinate
+    """Easting of the first flash of the first line."""
     start_northing_m: Coordinate
+    """Northing of the first flash of the first line."""
     frames_per_line: Count
+    """Flashes of each line."""
     lines: Count = 1
+    """Number of parallel lines; the next one lies to the right."""
 
 
 class AreaFlight(PlannedFlight):
@@ -85,8 +102,11 @@ class AreaFlight(PlannedFlight):
 
     kind: Literal["area"]
     corners_m: list[Pair] | None = None
+    """Corners of the area on the map, each `[easting, northing]`."""
     file: Text | None = None
+    """GeoJSON file with the area's polygon, in place of corners."""
     cross_lines: Annotated[int, Field(ge=0, le=1000)] = 0
+    """Lines across the others."""
 
 
 class RecordedFlight(Flight):
@@ -99,12 +119,20 @@ class RecordedFlight(Flight):
 
     kind: Literal["trajectory"]
     file: Text
+    """The trajectory's file."""
     format: TrackFormat | None = None
+    """Its format, where the file's name does not tell."""
     column_prefix: Literal["", "true_", "measured_"] = ""
+    """Which poses of a `trajectory.csv` of ours are flown: `true_` or `measured_`."""
     legs_s: list[Pair] = Field(default_factory=list)
+    """Lines, each `[begin, end]` since the track's first time; without them all of it is one line.
+    """
     offset_easting_m: Coordinate = 0.0
+    """Added to every easting."""
     offset_northing_m: Coordinate = 0.0
+    """Added to every northing."""
     offset_up_m: Elevation = 0.0
+    """Added to every height, for instance from ellipsoid to vertical datum."""
 
 
 def _with_kind(given: Any) -> Any:

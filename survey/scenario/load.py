@@ -34,6 +34,12 @@ def load_scenario(
         When there is neither such a file nor such a name.
     ScenarioError
         With every fault of the file.
+
+    Examples
+    --------
+    >>> scenario = load_scenario("sandbar", {"water.type": "harbor"})
+    >>> scenario.mission.title, scenario.water.type, scenario.laser.pulse_width_ns
+    ('Sandbar', 'harbor', 10.0)
     """
     file = find_scenario(path)
     tables = with_changes(_read(file), overrides or {}, name=str(file))

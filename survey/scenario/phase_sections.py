@@ -24,6 +24,7 @@ class PetzoldPhase(PhaseFunctionSection):
 
     kind: Literal["petzold"]
     type: PetzoldType
+    """Which of the waters."""
 
 
 class AverageParticlePhase(PhaseFunctionSection):
@@ -31,6 +32,7 @@ class AverageParticlePhase(PhaseFunctionSection):
 
     kind: Literal["average_particle"]
     edition: Literal["web book", "mobley 1993"] = "web book"
+    """Which printed table."""
 
 
 class FournierForandPhase(PhaseFunctionSection):
@@ -38,8 +40,11 @@ class FournierForandPhase(PhaseFunctionSection):
 
     kind: Literal["fournier_forand"]
     particle_index: Annotated[float, Field(ge=1.001, le=1.35)] | None = None
+    """Refractive index of the particles relative to water."""
     size_slope: Annotated[float, Field(ge=3.01, le=4.99)] | None = None
+    """Slope mu of the particles' size distribution."""
     backscatter_fraction: Annotated[float, Field(gt=0.0, lt=0.5)] | None = None
+    """Backscattering over scattering, in place of both."""
 
 
 class HenyeyGreensteinPhase(PhaseFunctionSection):
@@ -47,6 +52,7 @@ class HenyeyGreensteinPhase(PhaseFunctionSection):
 
     kind: Literal["henyey_greenstein"]
     asymmetry: Asymmetry
+    """Mean cosine g."""
 
 
 class TwoTermPhase(PhaseFunctionSection):
@@ -54,8 +60,11 @@ class TwoTermPhase(PhaseFunctionSection):
 
     kind: Literal["two_term"]
     forward_share: Share
+    """Share of the first function."""
     forward_asymmetry: Asymmetry
+    """Mean cosine of the first."""
     backward_asymmetry: Asymmetry
+    """Mean cosine of the second."""
 
 
 class MolecularPhase(PhaseFunctionSection):
@@ -63,6 +72,7 @@ class MolecularPhase(PhaseFunctionSection):
 
     kind: Literal["molecular"]
     depolarisation: Share = 0.039
+    """Depolarisation ratio."""
 
 
 class TablePhase(PhaseFunctionSection):
@@ -70,7 +80,9 @@ class TablePhase(PhaseFunctionSection):
 
     kind: Literal["table"]
     file: Text
+    """The CSV file."""
     small_angle_slope: Annotated[float, Field(gt=-2.0)] | None = None
+    """Power of the angle by which values go on below the first row."""
 
 
 def _short_form(given: Any) -> Any:
@@ -94,7 +106,9 @@ class PhaseShare(Section):
     """One of the phase functions of a mixture, with its share of all scattering."""
 
     scattering_fraction: Annotated[float, Field(gt=0.0, le=1.0)]
+    """Its share of all scattering."""
     phase_function: PlainPhase
+    """The function."""
 
 
 class MixturePhase(PhaseFunctionSection):
@@ -102,6 +116,7 @@ class MixturePhase(PhaseFunctionSection):
 
     kind: Literal["mixture"]
     components: list[PhaseShare] = Field(min_length=1)
+    """The functions with their shares."""
 
 
 AnyPhase = Annotated[

@@ -35,9 +35,10 @@ class Scenario:
 
     Parameters
     ----------
-    mission, flight, motion, navigation, laser, camera, receiver, detector, water, surface, seabed,
-    sun, transport, processing, run : Section
-        One for each section of the file, defaults filled in.
+    mission, flight, motion, navigation, laser, camera, receiver, detector : Section
+        The section of that name, defaults filled in.
+    water, surface, seabed, sun, transport, processing, run : Section
+        The section of that name, defaults filled in.
     name : str
         The file's name as it stands in faults.
     folder : Path
@@ -90,6 +91,14 @@ class Scenario:
         ------
         ScenarioError
             When the variation is not sound.
+
+        Examples
+        --------
+        >>> from survey import load_scenario
+        >>> by_day = load_scenario("wreck")
+        >>> by_night = by_day.replace(**{"sun.day": False, "mission.seed": 7})
+        >>> by_day.sun.day, by_night.sun.day, by_night.mission.seed
+        (True, False, 7)
         """
         tables = with_changes(self.given, changes, name=self.name)
         return Scenario.from_tables(tables, name=self.name, folder=self.folder)

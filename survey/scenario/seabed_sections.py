@@ -39,6 +39,7 @@ class MapClass(Material):
     """What the cells of one number in a map are made of."""
 
     value: int
+    """Number of the class in the map."""
 
 
 class BottomMap(Section):
@@ -49,26 +50,37 @@ class BottomMap(Section):
     """
 
     file: Text
+    """The raster file, in the mission's map."""
     band: Count = 1
+    """Which band."""
     nodata: NoData = None
+    """Value of cells without data, or `"none"`, where the file does not tell."""
     classes: list[MapClass] = Field(default_factory=list)
+    """What the numbers stand for; without them cells hold reflectances."""
 
 
 class SeabedSection(Material):
     """What every seabed has; it is read or made up to `margin_m` beyond the flight."""
 
     map: BottomMap | None = None
+    """What lies where."""
     margin_m: Positive = 100.0
+    """How far beyond the flight the bed is read or made."""
     objects: list[SeabedObject] = Field(default_factory=list)
+    """What lies on it."""
 
 
 class RoughenedSeabed(SeabedSection):
     """A seabed to which synthetic fine relief may be added."""
 
     roughness_rms_m: NotNegative = 0.0
+    """R.m.s. height of added relief."""
     roughness_spectral_slope: SpectralSlope = 3.0
+    """Exponent by which its power falls with wavenumber."""
     roughness_longest_wave_m: Positive = 20.0
+    """Its longest wave."""
     roughness_seed: Seed = 1
+    """Which relief."""
 
 
 class RasterSeabed(RoughenedSeabed):
@@ -79,9 +91,13 @@ class RasterSeabed(RoughenedSeabed):
 
     kind: Literal["raster"]
     file: Text
+    """The raster file."""
     band: Count = 1
+    """Which band."""
     nodata: NoData = None
+    """Value of cells without data, or `"none"`, where the file does not tell."""
     spacing_m: Positive | None = None
+    """Distance of nodes, if finer than the file's cells."""
 
 
 class PointsSeabed(SeabedSection):
@@ -89,9 +105,13 @@ class PointsSeabed(SeabedSection):
 
     kind: Literal["points"]
     file: Text
+    """The LAS or LAZ file."""
     cell_m: Positive = 1.0
+    """Side of the cells of which one point is taken."""
     longest_edge_m: Positive | None = None
+    """Longest edge of a triangle; 4 cells unless told."""
     classes: list[PointClassCode] = Field(default_factory=lambda: [2, 40], min_length=1)
+    """Classes whose points are seabed."""
 
 
 class MeshSeabed(SeabedSection):
@@ -99,9 +119,13 @@ class MeshSeabed(SeabedSection):
 
     kind: Literal["mesh"]
     file: Text
+    """The mesh file."""
     offset_easting_m: Coordinate = 0.0
+    """Added to every x."""
     offset_northing_m: Coordinate = 0.0
+    """Added to every y."""
     offset_up_m: Elevation = 0.0
+    """Added to every z."""
 
 
 class MadeSeabed(RoughenedSeabed):
@@ -111,6 +135,7 @@ class MadeSeabed(RoughenedSeabed):
     """
 
     spacing_m: Positive = 2.0
+    """Distance of nodes."""
 
 
 class PlaneSeabed(MadeSeabed):
@@ -118,6 +143,7 @@ class PlaneSeabed(MadeSeabed):
 
     kind: Literal["plane"]
     depth_m: Elevation
+    """Depth."""
 
 
 class SlopeSeabed(MadeSeabed):
@@ -125,8 +151,11 @@ class SlopeSeabed(MadeSeabed):
 
     kind: Literal["slope"]
     depth_m: Elevation
+    """Depth at the flight's start."""
     slope_deg: Slope
+    """How steep it is."""
     downhill_deg: Bearing
+    """Direction in which it falls."""
 
 
 class SandbarSeabed(MadeSeabed):
@@ -138,13 +167,21 @@ class SandbarSeabed(MadeSeabed):
 
     kind: Literal["sandbar"]
     shoreline_m: Coordinate
+    """Distance of the shoreline offshore from the flight's start."""
     offshore_deg: Bearing
+    """Direction out to sea."""
     slope_deg: Slope
+    """How steep the bed is."""
     bar_distance_m: Positive
+    """Distance of the bar's crest from the shoreline."""
     bar_height_m: Positive
+    """Height of the bar over the slope."""
     bar_sigma_m: Positive
+    """Half width of the bar, the sigma of its Gaussian section."""
     beach_slope_deg: Slope = 5.0
+    """How steep the beach is."""
     beach_height_m: Positive = 4.0
+    """How high the beach rises."""
 
 
 class ChannelSeabed(MadeSeabed):
@@ -152,12 +189,19 @@ class ChannelSeabed(MadeSeabed):
 
     kind: Literal["channel"]
     depth_m: Elevation
+    """Depth beside the channel."""
     channel_depth_m: Elevation
+    """Depth of its floor."""
     channel_easting_m: Coordinate
+    """Easting of a point on its axis."""
     channel_northing_m: Coordinate
+    """Northing of a point on its axis."""
     channel_heading_deg: Bearing
+    """Direction of its axis."""
     floor_width_m: Positive
+    """Width of its floor."""
     side_slope_deg: Slope
+    """How steep its sides are."""
 
 
 class RipplesSeabed(MadeSeabed):
@@ -165,13 +209,21 @@ class RipplesSeabed(MadeSeabed):
 
     kind: Literal["ripples"]
     depth_m: Elevation
+    """Mean depth."""
     wavelength_m: Positive
+    """Distance from crest to crest."""
     height_m: Positive
+    """Height from trough to crest."""
     crest_deg: Bearing
+    """Direction along the crests."""
     asymmetry: Asymmetry = 1.0
+    """Length of the gentle flank over that of the steep one."""
     crest_wander_m: NotNegative = 0.0
+    """R.m.s. by which crests stray from straight lines."""
     crest_seed: Seed = 1
+    """Which wandering."""
     spacing_m: Positive = 0.5
+    """Distance of nodes."""
 
 
 class ReefSeabed(MadeSeabed):
@@ -179,19 +231,33 @@ class ReefSeabed(MadeSeabed):
 
     kind: Literal["reef"]
     depth_m: Elevation
+    """Depth around the reef."""
     reef_depth_m: Elevation
+    """Depth of its top."""
     reef_easting_m: Coordinate
+    """Easting of a point on its axis."""
     reef_northing_m: Coordinate
+    """Northing of a point on its axis."""
     reef_heading_deg: Bearing
+    """Direction of its axis."""
     top_width_m: Positive
+    """Width of its top."""
     side_slope_deg: Slope = 30.0
+    """How steep its sides are."""
     relief_rms_m: Positive = 0.3
+    """R.m.s. height of the relief on its top."""
     relief_spectral_slope: SpectralSlope = 3.0
+    """Exponent by which the relief's power falls with wavenumber."""
     relief_longest_wave_m: Positive = 10.0
+    """Longest wave of the relief."""
     relief_seed: Seed = 1
+    """Which relief."""
     reef_substrate: Text = "coral"
+    """What the reef is made of."""
     reef_reflectance: Fraction | None = None
+    """Its reflectance, before the table's."""
     spacing_m: Positive = 1.0
+    """Distance of nodes."""
 
 
 class RoughSeabed(MadeSeabed):
@@ -199,7 +265,9 @@ class RoughSeabed(MadeSeabed):
 
     kind: Literal["rough"]
     depth_m: Elevation
+    """Mean depth."""
     roughness_rms_m: Positive = 0.15
+    """R.m.s. height of the relief."""
 
 
 Seabed = Annotated[

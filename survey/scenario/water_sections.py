@@ -29,8 +29,11 @@ class PetzoldWater(Water):
 
     type: PetzoldType
     absorption_per_m: Coefficient | None = None
+    """Absorption, in place of the measured one."""
     scattering_per_m: Coefficient | None = None
+    """Scattering, in place of the measured one."""
     phase_function: AnyPhase | None = None
+    """Phase function, in place of the measured one."""
 
 
 class StatedWater(Water):
@@ -38,16 +41,22 @@ class StatedWater(Water):
 
     type: Literal["stated"]
     absorption_per_m: PositiveCoefficient
+    """Absorption at the laser's wavelength."""
     scattering_per_m: PositiveCoefficient
+    """Scattering at the laser's wavelength."""
     phase_function: AnyPhase = AVERAGE_PARTICLE
+    """How it scatters."""
 
 
 class MolecularPart(Water):
     """Waters that begin with pure water; the phase function is that of the particles in it."""
 
     salinity_psu: Salinity = 35.0
+    """Salinity of the pure sea water."""
     temperature_degc: Temperature = 20.0
+    """Its temperature."""
     phase_function: AnyPhase = AVERAGE_PARTICLE
+    """Phase function of the particles."""
 
 
 class ComponentsWater(MolecularPart):
@@ -58,12 +67,19 @@ class ComponentsWater(MolecularPart):
 
     type: Literal["components"]
     pure_absorption: Literal["pope_fry", "smith_baker", "paper"] = "pope_fry"
+    """Whose absorption of pure water."""
     pure_scattering: Literal["zhang", "morel", "paper"] = "zhang"
+    """Whose scattering of pure sea water."""
     chlorophyll_mg_m3: Chlorophyll = 0.0
+    """Chlorophyll, with its absorption and, unless told, its particles."""
     particle_scattering: Literal["gordon_morel", "loisel_morel"] = "gordon_morel"
+    """Whose relation gives the particles' scattering from chlorophyll."""
     particle_scattering_550_per_m: Coefficient | None = None
+    """Scattering of the particles at 550 nm, in place of that relation."""
     yellow_absorption_440_per_m: Coefficient = 0.0
+    """Absorption of yellow substance at 440 nm."""
     yellow_slope_per_nm: Annotated[float, Field(gt=0.0, le=0.1)] = 0.014
+    """How fast that falls towards red."""
 
 
 class SurveyedWater(MolecularPart):
@@ -75,19 +91,28 @@ class SurveyedWater(MolecularPart):
 
     type: Literal["surveyed"]
     secchi_depth_m: Positive | None = None
+    """Depth at which a Secchi disc vanishes."""
     kd_490_per_m: Positive | None = None
+    """Diffuse attenuation at 490 nm."""
     turbidity_ntu: Positive | None = None
+    """Turbidity."""
     secchi_relation: Literal["tyler", "lee"] = "tyler"
+    """Whose relation from Secchi depth to the water."""
     estimate: Literal["low", "central", "high"] = "central"
+    """End of the relation's published spread: `low` towards clear, `high` towards turbid water."""
     particle_scattering_factor: Annotated[float, Field(ge=0.05, le=1.0)] = 0.30
+    """Scattering of the particles for each unit of chlorophyll to the power 0.62, at 550 nm."""
     measured_sun_zenith_deg: Annotated[float, Field(ge=0.0, le=75.0)] = 30.0
+    """Angle of the sun off the zenith when it was measured."""
 
 
 class Depths(Section):
     """Where a layer lies under mean level; without an end it goes down to the bottom."""
 
     from_depth_m: NotNegative
+    """Top of the layer under the level water."""
     to_depth_m: Positive | None = None
+    """Its lower end; unless told, the bottom."""
 
 
 class PetzoldLayer(Depths, PetzoldWater):
@@ -147,8 +172,11 @@ class WaterSection(Section):
 
     type: str
     refractive_index: RefractiveIndex = 1.3415
+    """Phase index, by which light bends."""
     group_index: RefractiveIndex = 1.36
+    """Group index, by which time is told."""
     layers: list[AnyLayer] = Field(default_factory=list)
+    """Layers of other water."""
 
 
 class PetzoldSection(PetzoldWater, WaterSection):
@@ -174,6 +202,7 @@ class Profile(Section):
     """
 
     file: Text
+    """The cast's CSV file."""
 
 
 def _file_alone(given: Any) -> Any:
@@ -186,7 +215,9 @@ class ProfiledSection(WaterSection):
 
     type: Literal["profiled"]
     profile: Annotated[Profile, BeforeValidator(_file_alone)]
+    """The cast: its file's name alone, or a table."""
     phase_function: AnyPhase = AVERAGE_PARTICLE
+    """Phase function at all depths, where the file has no `backscatter_fraction`."""
 
 
 AnyWater = Annotated[

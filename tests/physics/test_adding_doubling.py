@@ -20,6 +20,13 @@ from survey.transport.slab import slab
 QUANTILE = 3.45
 POINTS = 24
 CLEAR, COASTAL, HARBOR = 0.037 / 0.151, 0.219 / 0.398, 1.824 / 2.19
+WATERS = {
+    "clear": (petzold("clear"), CLEAR),
+    "coastal": (petzold("coastal"), COASTAL),
+    "harbor": (petzold("harbor"), HARBOR),
+    "average particle": (average_particle(), 0.9),
+}
+THICKNESSES = (1.0, 4.0)
 
 
 class Slab(iadpython.Sample):
@@ -78,17 +85,8 @@ def test_henyey_greenstein_slabs(asymmetry, albedo, thickness):
     assert is_equivalent(result.transmittance, result.transmittance_error, transmitted, 0.01)
 
 
-@pytest.mark.parametrize(
-    ("phase", "albedo"),
-    [
-        (petzold("clear"), CLEAR),
-        (petzold("coastal"), COASTAL),
-        (petzold("harbor"), HARBOR),
-        (average_particle(), 0.9),
-    ],
-    ids=["clear", "coastal", "harbor", "average particle"],
-)
-@pytest.mark.parametrize("thickness", [1.0, 4.0])
+@pytest.mark.parametrize(("phase", "albedo"), WATERS.values(), ids=WATERS)
+@pytest.mark.parametrize("thickness", THICKNESSES)
 def test_petzold_slabs(phase, albedo, thickness):
     """R within 4 % (delta-M is 1 % off in thin coastal water), T within 1.6 %."""
     reflected, transmitted, _, _ = Slab(phase, a=albedo, b=thickness).rt()

@@ -14,6 +14,26 @@ from survey.transport.slab import slab
 
 # 99.9 % two-sided, 63 degrees of freedom.
 QUANTILE = 3.45
+# Optics, and what was published: reflectance and, if there is any, transmittance.
+PUBLISHED = {
+    "van de Hulst (1980)": (
+        {"optical_thickness": 2.0, "albedo": 0.9, "phase_function": henyey_greenstein(0.75)},
+        (0.09739, 0.66096),
+    ),
+    "isotropic, conservative": (
+        {"optical_thickness": 1.0, "albedo": 1.0, "phase_function": henyey_greenstein(0.0)},
+        (0.34133, 0.65867),
+    ),
+    "Giovanelli (1955)": (
+        {
+            "optical_thickness": math.inf,
+            "albedo": 0.9,
+            "phase_function": henyey_greenstein(0.0),
+            "index": 1.5,
+        },
+        (0.2600,),
+    ),
+}
 
 
 def is_equivalent(value: float, error: float, published: float, tolerance: float) -> bool:
@@ -26,35 +46,25 @@ def test_van_de_hulst_slab():
 
     Tolerance 0.6 % and 0.2 %; 16 M walks put the standard error at 0.08 % and 0.01 %.
     """
-    result = slab(
-        optical_thickness=2.0,
-        albedo=0.9,
-        phase_function=henyey_greenstein(0.75),
-        walks=16_000_000,
-    )
-    assert is_equivalent(result.reflectance, result.reflectance_error, 0.09739, 0.006)
-    assert is_equivalent(result.transmittance, result.transmittance_error, 0.66096, 0.002)
+    optics, (reflected, transmitted) = PUBLISHED["van de Hulst (1980)"]
+    result = slab(**optics, walks=16_000_000)
+    assert is_equivalent(result.reflectance, result.reflectance_error, reflected, 0.006)
+    assert is_equivalent(result.transmittance, result.transmittance_error, transmitted, 0.002)
 
 
 def test_conservative_isotropic_slab():
     """Thickness 1, normal incidence: R = 0.34133, T = 0.65867; nothing is lost."""
-    result = slab(
-        optical_thickness=1.0, albedo=1.0, phase_function=henyey_greenstein(0.0), walks=6_400_000
-    )
-    assert is_equivalent(result.reflectance, result.reflectance_error, 0.34133, 0.004)
+    optics, (reflected, _) = PUBLISHED["isotropic, conservative"]
+    result = slab(**optics, walks=6_400_000)
+    assert is_equivalent(result.reflectance, result.reflectance_error, reflected, 0.004)
     assert result.reflectance + result.transmittance == pytest.approx(1.0, abs=1e-12)
 
 
 def test_giovanelli_half_space():
     """Albedo 0.9, isotropic, index 1.5: R = 0.2600 with the mirror part (Giovanelli 1955)."""
-    result = slab(
-        optical_thickness=math.inf,
-        albedo=0.9,
-        phase_function=henyey_greenstein(0.0),
-        index=1.5,
-        walks=3_200_000,
-    )
-    assert is_equivalent(result.reflectance, result.reflectance_error, 0.2600, 0.005)
+    optics, (reflected,) = PUBLISHED["Giovanelli (1955)"]
+    result = slab(**optics, walks=3_200_000)
+    assert is_equivalent(result.reflectance, result.reflectance_error, reflected, 0.005)
 
 
 def test_white_bottom_returns_all_light():
