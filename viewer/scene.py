@@ -71,19 +71,25 @@ def bottom_points(
 
 
 def bottom_surface(
-    cloud: PointCloud, map_frame: MapFrame, *, water_level: float, exaggeration: float
+    cloud: PointCloud,
+    map_frame: MapFrame,
+    *,
+    water_level: float,
+    exaggeration: float,
+    cell_size: float | None = None,
 ) -> pyvista.PolyData:
     """Return the gridded bottom as a mesh with its depth.
 
-    The cell is 1.7 times the median distance of a point to its fourth neighbour, so that
-    nearly all cells of a surveyed place hold a point and gaps stay gaps.
+    Unless a cell size is given [m], it is 1.7 times the median distance of a point to its fourth
+    neighbour, so that nearly all cells of a surveyed place hold a point and gaps stay gaps.
 
     Raises
     ------
     ProductError
         If there is no such point or no mesh can be made of them.
     """
-    cell_size = CELLS_PER_SPACING * median_spacing(solid_positions(cloud)[:, :2])
+    if cell_size is None:
+        cell_size = CELLS_PER_SPACING * median_spacing(solid_positions(cloud)[:, :2])
     grid = grid_elevation(cloud, map_frame, cell_size=cell_size)
     vertices, faces = grid_surface(grid, map_frame)
     return _mesh(vertices, faces, water_level, exaggeration)
@@ -146,6 +152,15 @@ def footprint(cloud: PointCloud, frame: int) -> FloatArray:
         np.argmax(row - column),
     ]
     return np.asarray(cloud.position[of_frame][corners])
+
+
+def outlines(corners: FloatArray) -> pyvista.PolyData:
+    """Return the closed outlines of footprints (n, 4, 3)."""
+    import pyvista
+
+    rings = np.arange(4 * len(corners)).reshape(-1, 4)
+    cells = np.column_stack([np.full(len(rings), 5), rings, rings[:, 0]])
+    return pyvista.PolyData(corners.reshape(-1, 3), lines=cells.ravel())
 
 
 def light_cone(sensor: FloatArray, corners: FloatArray) -> pyvista.PolyData:
