@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from survey.cloud.points import PointCloud
 from viewer.run_folder import FlownSurvey
-from viewer.scene import footprint
+from viewer.scene import outermost
 
 FloatArray = NDArray[np.float64]
 
@@ -58,6 +58,6 @@ def _corners(bottom: PointCloud) -> dict[int, FloatArray]:
     frames, starts = np.unique(bottom.frame[order], return_index=True)
     members = np.split(order, starts[1:])
     return {
-        int(frame): footprint(bottom.select(member), int(frame))
+        int(frame): bottom.position[member[outermost(bottom.row[member], bottom.column[member])]]
         for frame, member in zip(frames, members, strict=True)
     }

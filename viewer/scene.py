@@ -143,15 +143,21 @@ def footprint(cloud: PointCloud, frame: int) -> FloatArray:
     of_frame = cloud.frame == frame
     if not of_frame.any():
         return np.zeros((0, 3))
-    row = cloud.row[of_frame].astype(np.int64)
-    column = cloud.column[of_frame].astype(np.int64)
-    corners = [
-        np.argmin(row + column),
-        np.argmax(column - row),
-        np.argmax(row + column),
-        np.argmax(row - column),
-    ]
+    corners = outermost(cloud.row[of_frame], cloud.column[of_frame])
     return np.asarray(cloud.position[of_frame][corners])
+
+
+def outermost(row: NDArray[np.uint16], column: NDArray[np.uint16]) -> NDArray[np.intp]:
+    """Return which of some pixels (n,) lie nearest the corners of the camera, in ring order.
+
+    Examples
+    --------
+    >>> outermost(np.array([0, 0, 1, 1], np.uint16), np.array([0, 1, 0, 1], np.uint16))
+    array([0, 1, 3, 2])
+    """
+    down, right = row.astype(np.int64), column.astype(np.int64)
+    sides = (-down - right, right - down, down + right, down - right)
+    return np.array([np.argmax(side) for side in sides])
 
 
 def outlines(corners: FloatArray) -> pyvista.PolyData:

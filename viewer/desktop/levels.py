@@ -96,10 +96,19 @@ class LeveledPlaces:
 
     @classmethod
     def of(
-        cls, position: FloatArray, frame: NDArray[np.uint32], *, spacing: float
+        cls,
+        position: FloatArray,
+        frame: NDArray[np.uint32],
+        *,
+        spacing: float,
+        at_most: int | None = None,
     ) -> LeveledPlaces:
-        """Return places (n, 3) and their frames in order."""
-        order = coarse_to_fine(position)
+        """Return places (n, 3) and their frames in order; at most so many, drawn by lot."""
+        if at_most is not None and len(position) > at_most:
+            few = np.sort(np.random.default_rng(0).choice(len(position), at_most, replace=False))
+            order = few[coarse_to_fine(position[few])]
+        else:
+            order = coarse_to_fine(position)
         return cls(
             order=order,
             place=position[order].astype(np.float32),

@@ -33,8 +33,8 @@ FAR = 10.0
 SHARE = {Layer.BOTTOM: 1.0, Layer.SURFACE: 0.1, Layer.OTHER: 0.1}
 """Of the points that may be drawn."""
 
-SEA_POINTS = 3_000
-"""At most so many of the sea, in view and small, so that the bottom shines through."""
+SEA_POINTS, SEA_OF = 3_000, 500_000
+"""Of the sea so few in view, and small, so that the bottom shines through; taken of so many."""
 
 MOVING_SECONDS, RESTING_SECONDS = 0.07, 1.0
 
@@ -146,7 +146,9 @@ class Stage:
 
     def _leveled(self, layer: Layer) -> LeveledPlaces:
         cloud = self.content.clouds[layer]
-        return LeveledPlaces.of(cloud.position, cloud.frame, spacing=self.content.spacing)
+        most = SEA_OF if layer is Layer.SURFACE else None
+        spacing = self.content.spacing
+        return LeveledPlaces.of(cloud.position, cloud.frame, spacing=spacing, at_most=most)
 
     def _stretch(self, places: NDArray[Any], state: ViewState) -> FloatArray:
         level = self.content.flown.water_level
