@@ -90,15 +90,16 @@ def draw_profile(found: Profile, *, water_level: float) -> Picture:
         color=ORANGE,
         lw=1.4,
         label="true seabed",
+        zorder=3.0,
     )
     axes.plot(
-        *(found.along, water_level - found.elevation),
-        *(".",),
+        found.along,
+        water_level - found.elevation,
+        ".",
         color=BLUE,
         ms=4,
         label=f"{len(found.along):,} points within {found.half_width:.1f} m of the line",
     )
-    axes.axhline(0.0, color=BLUE, lw=0.8, alpha=0.6)
     axes.invert_yaxis()
     axes.set_xlabel("distance from the first end [m]")
     axes.set_ylabel("depth below the water level [m]")

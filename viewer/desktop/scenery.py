@@ -36,7 +36,9 @@ BEAM = "#2ca02c"
 MARK = "#d5008f"
 SAND = (185, 168, 136)
 AIRCRAFT_PIXELS = 60.0
-LAYERS = (Layer.MESH, Layer.SEABED, Layer.FLIGHT, Layer.FOOTPRINTS, Layer.LIGHT)
+LIFTED = (Layer.FOOTPRINTS, "footprint", "marks", "profile")
+LIFT_PIXELS = 30.0
+"""So far these lie in front of the bottom, towards the eye, lest it swallow them."""
 
 
 class Scenery:
@@ -80,6 +82,10 @@ class Scenery:
                 self._actors[layer] = make()
             for actor in self._actors.get(layer, []):
                 actor.visibility = layer in state.layers
+        lift = LIFT_PIXELS * state.orbit.metres_per_pixel * state.orbit.view((1, 1)).towards
+        for name in LIFTED:
+            for actor in self._actors.get(name, []):
+                actor.SetPosition(*lift)
         for actor in self._stretched:
             actor.SetOrigin(0.0, 0.0, self._content.flown.water_level)
             actor.SetScale(1.0, 1.0, state.exaggeration)
@@ -207,7 +213,7 @@ class Scenery:
             import trimesh
 
             mesh = trimesh.Trimesh(*self._sampled(seabed))
-        shown = near(mesh.triangles_center[:, :2], self._seen(), AROUND)
+        shown = faces_around(mesh.triangles[:, :, :2], self._seen(), AROUND)
         part: Any = mesh.submesh([shown], append=True)
         return [self._coloured(Layer.SEABED, scene.true_seabed(part, **level))]
 
@@ -253,18 +259,24 @@ class Scenery:
         return [actor]
 
 
-def near(places: FloatArray, others: FloatArray, reach: float) -> NDArray[np.intp]:
-    """Return the numbers of the places (n, 2) that have one of the others (m, 2) within reach [m].
+def faces_around(faces: FloatArray, places: FloatArray, reach: float) -> NDArray[np.intp]:
+    """Return the numbers of the faces (n, 3, 2) whose middle has a place (m, 2) within reach [m].
+
+    A face wider than the reach is taken if it may lie under a place.
 
     Examples
     --------
-    >>> near(np.array([[0.0, 0.0], [9.0, 0.0]]), np.array([[0.5, 0.0]]), 1.0)
-    array([0])
+    >>> small = np.array([[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]])
+    >>> faces_around(np.stack([small, small + 9.0, 99.0 * small]), np.array([[0.5, 0.5]]), 1.0)
+    array([0, 2])
     """
     from scipy.spatial import cKDTree
 
-    distance, _ = cKDTree(others).query(places, distance_upper_bound=reach)
-    return np.flatnonzero(np.isfinite(distance))
+    low, high = faces.min(axis=1), faces.max(axis=1)
+    distance, _ = cKDTree(places).query(faces.mean(axis=1), distance_upper_bound=reach)
+    apart = (low > places.max(axis=0)) | (high < places.min(axis=0))
+    wide = (high - low).max(axis=1) > reach
+    return np.flatnonzero(np.isfinite(distance) | (wide & ~apart.any(axis=1)))
 
 
 def grid_mesh(

@@ -110,9 +110,9 @@ class Stage:
         """
         view = state.orbit.view(self.size)
         self.kind = kind
-        self.scenery.show(state)
         self.scenery.fly(state, **vars(flash or Flash.of(self.content.flashes, state.frame)))
         self.scenery.mark(state)
+        self.scenery.show(state)
         self._points(state, view)
         self._paint(state)
         self._aim(view)

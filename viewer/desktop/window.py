@@ -189,7 +189,12 @@ class Window:
             return
         if moving:
             self._moved_at = time.monotonic()
-        self.become(state, kind="moving" if moving else "resting")
+        old = self.state
+        try:
+            self.become(state, kind="moving" if moving else "resting")
+        except (OSError, ValueError) as fault:
+            self.become(old)
+            self.say(str(fault))
 
     def _is_at_rest(self) -> bool:
         return time.monotonic() - self._moved_at > REST_AFTER_S
@@ -225,11 +230,9 @@ class Window:
             self._moved_at = time.monotonic()
 
     def _listen(self) -> None:
-        from vtkmodules.vtkInteractionStyle import vtkInteractorStyleUser
-
         interactor = self._interactor
         interactor.RemoveObservers("KeyPressEvent")
-        interactor.SetInteractorStyle(vtkInteractorStyleUser())
+        interactor.SetInteractorStyle(None)
         for event, heard in (
             ("KeyPressEvent", self._key_pressed),
             ("LeftButtonPressEvent", self._button_pressed),
