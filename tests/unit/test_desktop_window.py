@@ -118,6 +118,17 @@ def test_a_drag_turns_the_view_with_few_points_and_rest_brings_all(window: Windo
     assert resting == len(window.content.bottom)
 
 
+def test_slow_pictures_thin_the_points_while_it_still_moves(window: Window) -> None:
+    window.stage.paces["moving"].points = 4000
+    window.become(replace(window.state, exaggeration=5.0))
+    window.drag(10.0, 0.0, move=False)
+    before = window.stage.layers[Layer.BOTTOM].drawn
+    window.stage.paces["moving"].points = 600
+    window.drag(10.0, 0.0, move=False)
+    assert before > 2000
+    assert window.stage.layers[Layer.BOTTOM].drawn <= 600
+
+
 def test_interactor_events_turn_zoom_and_pick(window: Window) -> None:
     interactor: Any = window.plotter.iren.interactor  # type: ignore[union-attr]
     start = window.state.orbit

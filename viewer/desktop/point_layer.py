@@ -74,9 +74,13 @@ class PointLayer:
 
     def paint(self, paint: Paint) -> None:
         """Give the chosen points their colours."""
-        for kind, chosen in (("resting", self.resting), ("moving", self.moving)):
-            data = _points(self.places.place[chosen], paint(self.places.order[chosen]))
-            feed(self._actors[kind], data)
+        self._feed("resting", self.resting, paint)
+        self._feed("moving", self.moving, paint)
+
+    def thin(self, count: int, paint: Paint) -> None:
+        """Draw no more than so many points while it moves."""
+        self.moving = self.moving[:count]
+        self._feed("moving", self.moving, paint)
 
     def show(self, kind: str, view: View) -> None:
         """Show the points for a kind of view, "resting" or "moving"; with "" none."""
@@ -97,6 +101,10 @@ class PointLayer:
         """How many points are drawn."""
         chosen = {"resting": self.resting, "moving": self.moving}.get(self._shown)
         return 0 if chosen is None else len(chosen)
+
+    def _feed(self, kind: str, chosen: IndexArray, paint: Paint) -> None:
+        data = _points(self.places.place[chosen], paint(self.places.order[chosen]))
+        feed(self._actors[kind], data)
 
     def _size(self, kind: str, view: View) -> float:
         if not self._closed:

@@ -36,6 +36,9 @@ SHARE = {Layer.BOTTOM: 1.0, Layer.SURFACE: 0.1, Layer.OTHER: 0.1}
 SEA_POINTS, SEA_OF = 3_000, 500_000
 """Of the sea so few in view, and small, so that the bottom shines through; taken of so many."""
 
+TOO_MANY = 1.2
+"""Times the points that the pace allows, and fewer are drawn at once."""
+
 MOVING_SECONDS, RESTING_SECONDS = 0.07, 1.0
 
 
@@ -163,9 +166,19 @@ class Stage:
         ):
             self._choose(state, view)
             self._chosen, self._painted = (wanted, seen, self.kind), ()
+        elif self.kind == "moving":
+            self._thin(state)
         for layer, points in self.layers.items():
             points.stretch(state.exaggeration, self.content.flown.water_level)
             points.show(self.kind if layer in state.layers else "", view)
+
+    def _thin(self, state: ViewState) -> None:
+        """Draw fewer points at once where pictures take too long for the number last chosen."""
+        most = self.paces["moving"].points
+        for layer, points in self.layers.items():
+            count = int(SHARE[layer] * most)
+            if layer in state.layers and len(points.moving) > TOO_MANY * count:
+                points.thin(count, partial(self.colouring.colours, state.attribute, layer))
 
     def _choose(self, state: ViewState, view: View) -> None:
         moving, resting = self.paces["moving"].points, self.paces["resting"].points

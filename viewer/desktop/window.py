@@ -31,7 +31,7 @@ STILL = 4.0
 """A press and release within so many pixels is a click."""
 
 HINT = "? lists the keys"
-FLYING = "The frame is flown again for its waveform ..."
+FLYING = "The frame is flown again for its waveform; the first takes longest ..."
 
 
 def open_window(run: Path, *, watch: Watcher) -> None:
