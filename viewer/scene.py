@@ -24,6 +24,7 @@ FloatArray = NDArray[np.float64]
 DEPTH = "depth below water level [m]"
 CELLS_PER_SPACING = 1.7
 NEIGHBOURS = 4
+MOST_NODES = 40_000
 SMOOTHING_STEPS = 60
 SMOOTHING_PASS_BAND = 0.01
 
@@ -206,6 +207,18 @@ def sea_sheet(cloud: PointCloud, *, water_level: float) -> pyvista.PolyData:
     hull = cloud.position[ConvexHull(cloud.position[:, :2]).vertices]
     places = np.column_stack([hull[:, :2], np.full(len(hull), water_level)])
     return pyvista.PolyData(places, faces=np.append(len(hull), np.arange(len(hull))))
+
+
+def cell_for(extent: FloatArray) -> float:
+    """Return the cell, a multiple of 0.5 m, with which a grid has at most 40,000 nodes or so.
+
+    Examples
+    --------
+    >>> cell_for(np.array([800.0, 200.0])), cell_for(np.array([3.0, 1.0]))
+    (2.0, 0.5)
+    """
+    width, height = np.maximum(extent, 1.0)
+    return float(max(np.ceil(2.0 * np.sqrt(width * height / MOST_NODES)) / 2.0, 0.5))
 
 
 def _points(places: FloatArray, water_level: float, exaggeration: float) -> pyvista.PolyData:

@@ -16,7 +16,6 @@ from viewer.desktop.feeding import COLOUR, coloured, feed
 from viewer.desktop.levels import LeveledPlaces
 from viewer.desktop.state import Layer, ViewState
 from viewer.labels import FLIGHT, INK
-from viewer.web.seabed import cell_for
 
 if TYPE_CHECKING:
     import pyvista
@@ -225,7 +224,7 @@ class Scenery:
     def _sampled(self, seabed: Seabed) -> tuple[FloatArray, NDArray[np.intp]]:
         place = self._content.bottom.position
         low, high = place[:, :2].min(axis=0), place[:, :2].max(axis=0)
-        cell = cell_for(high - low)
+        cell = scene.cell_for(high - low)
         x, y = (np.arange(low[i], high[i] + cell, cell) for i in range(2))
         return grid_mesh(x, y, seabed.elevation_at)
 
