@@ -93,6 +93,7 @@ class Window:
         self._pressed: tuple[int, int] | None = None
         self._last: tuple[int, int] = (0, 0)
         self._moved_at = 0.0
+        self._moving_view = False
         self._listen()
         self.become(self.state)
 
