@@ -56,6 +56,7 @@ $(SLOW:%=slow-%): slow-%: libraries $(READY)
 bench: $(READY)
 	$(BIN)/python tests/benchmarks/kernels.py
 	$(BIN)/python tests/benchmarks/products.py
+	$(BIN)/python tests/benchmarks/window.py
 	$(BIN)/bathyflash bench
 
 format: $(READY)

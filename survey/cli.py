@@ -265,6 +265,10 @@ def view(
     web: Annotated[
         Path | None, typer.Option(metavar="FILE.html", help="A page for any browser, one file.")
     ] = None,
+    movie: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="A fly-over along the flight lines, MP4 or GIF."),
+    ] = None,
     points: Annotated[
         int, typer.Option(min=1, help="At most so many bottom points on the page.")
     ] = 2_000_000,
@@ -279,13 +283,16 @@ def view(
     ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing but errors.")] = False,
 ) -> None:
-    """Draw a finished run, seabed, water surface and flight: a picture, or a page to turn it in."""
+    """Open a finished run in a window, or make of it a picture, a page or a movie."""
     from survey.console import watching
     from survey.errors import OtherRunError, UserError
 
-    if screenshot is None and web is None:
-        raise UserError("nothing to draw. Name a picture with --screenshot, a page with --web")
     try:
+        if screenshot is None and web is None and movie is None:
+            from viewer.desktop.window import open_window
+
+            with watching(sys.stdout, quiet=quiet) as watcher:
+                open_window(folder, watch=watcher)
         if screenshot is not None:
             from viewer.screenshot import screenshot as draw
 
@@ -295,6 +302,11 @@ def view(
 
             with watching(sys.stdout, quiet=quiet) as watcher:
                 make_page(folder, web, points=points, pixels=pixels, watch=watcher)
+        if movie is not None:
+            from viewer.desktop.movie import make_movie
+
+            with watching(sys.stdout, quiet=quiet) as watcher:
+                make_movie(folder, movie, watch=watcher)
     except OtherRunError:
         raise
     except (ValueError, RuntimeError) as fault:

@@ -7,6 +7,8 @@ import subprocess
 import sys
 from functools import cache
 
+from survey.errors import UserError
+
 LIBRARIES = "libexpat1 libegl1 libgl1 libusb-1.0-0 libx11-6 libidn2-0 libudev1 libgomp1"
 PROBE = """
 import pyvista
@@ -36,6 +38,43 @@ def require_rendering() -> None:
         raise RuntimeError(
             f"rendering: {fault}. On Debian or Ubuntu type: apt-get install -y {LIBRARIES}"
         )
+
+
+def require_display() -> None:
+    """Check that there is a display for a window.
+
+    VTK's windows on Linux are those of X11, which Wayland's desktops offer too.
+
+    Raises
+    ------
+    UserError
+        If there is none, or none that answers, with what to do instead.
+    """
+    if sys.platform != "linux":
+        return
+    name = os.environ.get("DISPLAY", "")
+    fault = _display_fault() if name else "DISPLAY is not set"
+    if fault:
+        raise UserError(
+            f"no display for a window: {fault}. Draw a picture with --screenshot FILE.png, "
+            "a page for any browser with --web FILE.html, a fly-over with --movie FILE.mp4"
+        )
+
+
+def _display_fault() -> str:
+    """Return why the display that DISPLAY names cannot be used; asked of X11 itself."""
+    import ctypes
+
+    try:
+        x11 = ctypes.CDLL("libX11.so.6")
+    except OSError:
+        return "the library libX11.so.6 is missing"
+    x11.XOpenDisplay.restype = ctypes.c_void_p
+    display = x11.XOpenDisplay(None)
+    if not display:
+        return f"{os.environ['DISPLAY']} does not answer"
+    x11.XCloseDisplay(ctypes.c_void_p(display))
+    return ""
 
 
 def _do_without_display() -> None:

@@ -24,6 +24,7 @@ FloatArray = NDArray[np.float64]
 DEPTH = "depth below water level [m]"
 CELLS_PER_SPACING = 1.7
 NEIGHBOURS = 4
+MOST_NODES = 40_000
 SMOOTHING_STEPS = 60
 SMOOTHING_PASS_BAND = 0.01
 
@@ -71,19 +72,25 @@ def bottom_points(
 
 
 def bottom_surface(
-    cloud: PointCloud, map_frame: MapFrame, *, water_level: float, exaggeration: float
+    cloud: PointCloud,
+    map_frame: MapFrame,
+    *,
+    water_level: float,
+    exaggeration: float,
+    cell_size: float | None = None,
 ) -> pyvista.PolyData:
     """Return the gridded bottom as a mesh with its depth.
 
-    The cell is 1.7 times the median distance of a point to its fourth neighbour, so that
-    nearly all cells of a surveyed place hold a point and gaps stay gaps.
+    Unless a cell size is given [m], it is 1.7 times the median distance of a point to its fourth
+    neighbour, so that nearly all cells of a surveyed place hold a point and gaps stay gaps.
 
     Raises
     ------
     ProductError
         If there is no such point or no mesh can be made of them.
     """
-    cell_size = CELLS_PER_SPACING * median_spacing(solid_positions(cloud)[:, :2])
+    if cell_size is None:
+        cell_size = CELLS_PER_SPACING * median_spacing(solid_positions(cloud)[:, :2])
     grid = grid_elevation(cloud, map_frame, cell_size=cell_size)
     vertices, faces = grid_surface(grid, map_frame)
     return _mesh(vertices, faces, water_level, exaggeration)
@@ -137,15 +144,30 @@ def footprint(cloud: PointCloud, frame: int) -> FloatArray:
     of_frame = cloud.frame == frame
     if not of_frame.any():
         return np.zeros((0, 3))
-    row = cloud.row[of_frame].astype(np.int64)
-    column = cloud.column[of_frame].astype(np.int64)
-    corners = [
-        np.argmin(row + column),
-        np.argmax(column - row),
-        np.argmax(row + column),
-        np.argmax(row - column),
-    ]
+    corners = outermost(cloud.row[of_frame], cloud.column[of_frame])
     return np.asarray(cloud.position[of_frame][corners])
+
+
+def outermost(row: NDArray[np.uint16], column: NDArray[np.uint16]) -> NDArray[np.intp]:
+    """Return which of some pixels (n,) lie nearest the corners of the camera, in ring order.
+
+    Examples
+    --------
+    >>> outermost(np.array([0, 0, 1, 1], np.uint16), np.array([0, 1, 0, 1], np.uint16))
+    array([0, 1, 3, 2])
+    """
+    down, right = row.astype(np.int64), column.astype(np.int64)
+    sides = (-down - right, right - down, down + right, down - right)
+    return np.array([np.argmax(side) for side in sides])
+
+
+def outlines(corners: FloatArray) -> pyvista.PolyData:
+    """Return the closed outlines of footprints (n, 4, 3)."""
+    import pyvista
+
+    rings = np.arange(4 * len(corners)).reshape(-1, 4)
+    cells = np.column_stack([np.full(len(rings), 5), rings, rings[:, 0]])
+    return pyvista.PolyData(corners.reshape(-1, 3), lines=cells.ravel())
 
 
 def light_cone(sensor: FloatArray, corners: FloatArray) -> pyvista.PolyData:
@@ -185,6 +207,18 @@ def sea_sheet(cloud: PointCloud, *, water_level: float) -> pyvista.PolyData:
     hull = cloud.position[ConvexHull(cloud.position[:, :2]).vertices]
     places = np.column_stack([hull[:, :2], np.full(len(hull), water_level)])
     return pyvista.PolyData(places, faces=np.append(len(hull), np.arange(len(hull))))
+
+
+def cell_for(extent: FloatArray) -> float:
+    """Return the cell, a multiple of 0.5 m, with which a grid has at most 40,000 nodes or so.
+
+    Examples
+    --------
+    >>> cell_for(np.array([800.0, 200.0])), cell_for(np.array([3.0, 1.0]))
+    (2.0, 0.5)
+    """
+    width, height = np.maximum(extent, 1.0)
+    return float(max(np.ceil(2.0 * np.sqrt(width * height / MOST_NODES)) / 2.0, 0.5))
 
 
 def _points(places: FloatArray, water_level: float, exaggeration: float) -> pyvista.PolyData:

@@ -17,7 +17,9 @@ from survey.products.writing import write_whole
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
+SIZE = (11.0, 8.0)
 DOTS_PER_INCH = 130
 NANO = 1e-9
 LEAST_SHOWN = 1e-3  # of the strongest light of the background's bin
@@ -34,9 +36,26 @@ def draw(path: Path, pixel: xarray.Dataset) -> None:
     pixel : xarray.Dataset
         One pixel, from `survey.labelled.picked.PickedPixels`.
     """
+    figure = waveform_figure(pixel, size=SIZE)
+    content = io.BytesIO()
+    metadata = {"Software": None} if path.suffix.lower() == ".png" else {"Date": None}
+    figure.savefig(content, format=path.suffix[1:].lower(), dpi=DOTS_PER_INCH, metadata=metadata)
+    write_whole(path, content.getvalue())
+
+
+def waveform_figure(pixel: xarray.Dataset, *, size: tuple[float, float]) -> Figure:
+    """Return the waveform of one pixel, above light by origin and below what its gates hold.
+
+    Parameters
+    ----------
+    pixel : xarray.Dataset
+        From `survey.labelled.picked.PickedPixels`.
+    size : (width, height)
+        In inches.
+    """
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(11.0, 8.0), layout="constrained")
+    figure = Figure(figsize=size, layout="constrained")
     light, gates = figure.subplots(2, 1, sharex=True)
     figure.suptitle(
         f"{pixel.title}: frame {int(pixel.frame)}, row {int(pixel.row)}, "
@@ -51,10 +70,7 @@ def draw(path: Path, pixel: xarray.Dataset) -> None:
         axes.grid(alpha=0.25)
         axes.legend(loc="upper right", fontsize="small")
     _depth_axis(light, pixel)
-    content = io.BytesIO()
-    metadata = {"Software": None} if path.suffix.lower() == ".png" else {"Date": None}
-    figure.savefig(content, format=path.suffix[1:].lower(), dpi=DOTS_PER_INCH, metadata=metadata)
-    write_whole(path, content.getvalue())
+    return figure
 
 
 def _light(axes: Axes, pixel: xarray.Dataset) -> None:

@@ -143,13 +143,14 @@ def test_a_run_of_other_code_is_shown_without_waveforms_or_refused(
     ("words", "status", "said"),
     [
         (["--web", "page.txt"], 2, "page.txt: not a page"),
-        ([], 2, "nothing to draw"),
+        ([], 2, "no display for a window: DISPLAY is not set"),
         (["--web", "none/page.html"], 2, "no folder none. Make it first"),
     ],
 )
 def test_what_cannot_be_done_is_told(
-    folder: Path, words: list[str], status: int, said: str
+    folder: Path, words: list[str], status: int, said: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.delenv("DISPLAY", raising=False)
     result = CliRunner().invoke(app, ["view", str(folder), *words])
     assert (result.exit_code, "Traceback" in result.output) == (status, False)
     assert said in result.stderr

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from viewer.web.attributes import MEASURES, SNR_STEP
+from viewer.attributes import MEASURES
+from viewer.web.attributes import SNR_STEP, STEPS
 from viewer.web.points import HORIZONTAL_STEP, VERTICAL_STEP, Chosen
 from viewer.web.waveforms import LEAST_LIGHT, LIGHT_STEP
 
@@ -36,7 +37,9 @@ def left_out(
 
 
 def _roundings() -> str:
-    steps = ", ".join(f"{measure.short} to {measure.step * 1000:g} mm" for measure in MEASURES)
+    steps = ", ".join(
+        f"{measure.short} to {STEPS[measure.name] * 1000:g} mm" for measure in MEASURES
+    )
     return f"Rounded are {steps}, signal-to-noise ratio within {100 * SNR_STEP / 2:g} %."
 
 

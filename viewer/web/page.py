@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.points import PointCloud
+from viewer.attributes import categories_of, depth_attribute, frame_attribute
 from viewer.run_folder import FlownSurvey
 from viewer.scene import median_spacing
 from viewer.view import exaggeration, long_axis
-from viewer.web.attributes import categories_of, depth_attribute, frame_attribute, measures_of
+from viewer.web.attributes import as_json, measures_of
 from viewer.web.flight import flight_of
 from viewer.web.left_out import left_out
 from viewer.web.points import Chosen, packed_bottom, packed_cloud
@@ -130,9 +131,9 @@ def _attributes(
 ) -> list[dict[str, Any]]:
     """Return what points can be coloured by, in the order of the keys 1 to 9 and 0."""
     _, measures = measures_of(bottom)
-    classes, cause, substrate, line = categories_of(bottom, substrates)
-    depth = depth_attribute(flown.water_level - bottom.position[:, 2])
-    return [depth, *measures, classes, cause, substrate, frame_attribute(flown.frame), line]
+    *kinds, line = map(as_json, categories_of(bottom, substrates))
+    depth = as_json(depth_attribute(flown.water_level - bottom.position[:, 2]))
+    return [depth, *measures, *kinds, as_json(frame_attribute(flown.frame)), line]
 
 
 def _exaggeration(places: FloatArray, axis: FloatArray, water_level: float) -> float:

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.points import PointCloud
-from survey.errors import UserError
-from survey.products.grids import SOLID_CLASSES
+from viewer.clouds import clouds_of
 from viewer.run_folder import FlownSurvey
 from viewer.web.attributes import measures_of
 from viewer.web.columns import packed, rounded, start_of
@@ -52,17 +51,10 @@ def chosen_points(flown: FlownSurvey, *, at_most: int) -> dict[str, Chosen]:
     UserError
         If there is no point of bottom or ground.
     """
-    solid = np.isin(flown.bottom.classification, SOLID_CLASSES)
-    if not solid.any():
-        raise UserError(
-            "no point of bottom or ground in the run, so there is nothing to show. "
-            "See the outcomes in its report.html for the reason"
-        )
     few = max(at_most // SURFACE_SHARE, 1)
     return {
-        "bottom": by_lot(flown.bottom.select(solid), at_most=at_most),
-        "other": by_lot(flown.bottom.select(~solid), at_most=few),
-        "surface": by_lot(flown.surface, at_most=few),
+        name: by_lot(cloud, at_most=at_most if name == "bottom" else few)
+        for name, cloud in clouds_of(flown).items()
     }
 
 

@@ -8,10 +8,9 @@ import numpy as np
 
 from survey.cloud.points import PointCloud
 from terrain.seabed import Seabed
+from viewer.scene import cell_for
 from viewer.web.columns import packed, rounded, start_of
 from viewer.web.points import VERTICAL_STEP
-
-LARGEST_CELLS = 40_000
 
 
 def true_seabed(seabed: Seabed, bottom: PointCloud) -> dict[str, Any]:
@@ -44,15 +43,3 @@ def true_seabed(seabed: Seabed, bottom: PointCloud) -> dict[str, Any]:
         "start": start_of(elevation, VERTICAL_STEP),
         "elevation": packed({"z": rounded(elevation, VERTICAL_STEP)}),
     }
-
-
-def cell_for(extent: Any) -> float:
-    """Return the cell, a multiple of 0.5 m, with which a grid has at most 40,000 nodes or so.
-
-    Examples
-    --------
-    >>> cell_for(np.array([800.0, 200.0])), cell_for(np.array([3.0, 1.0]))
-    (2.0, 0.5)
-    """
-    width, height = np.maximum(extent, 1.0)
-    return float(max(np.ceil(2.0 * np.sqrt(width * height / LARGEST_CELLS)) / 2.0, 0.5))

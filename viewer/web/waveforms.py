@@ -15,7 +15,7 @@ from survey.labelled.picked import PickedPixels
 from survey.products.frame_file import read_frame
 from survey.progress import Watcher
 from survey.run_folder import frame_path
-from viewer.web.attributes import elevation_error
+from viewer.attributes import elevation_error
 from viewer.web.columns import logarithmic, packed
 from viewer.web.marks import Marks, marked_pixels
 

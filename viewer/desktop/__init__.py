@@ -1,0 +1,1 @@
+"""A window to fly a finished run in."""
