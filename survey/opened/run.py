@@ -157,6 +157,7 @@ class Run:
         Every pixel's expected light by origin, counts, thresholds, echoes and truth, see
         docs/waveforms.md: 25 MB a frame of 64 x 32 pixels and 320 bins. The frames last asked for
         are remembered. For many frames use ``bathyflash waveforms`` and `survey.open_waveforms`.
+        A single frame has no dimension ``frame``.
 
         Parameters
         ----------
@@ -170,8 +171,9 @@ class Run:
         OtherRunError
             When a frame flown again is not the run's own: the run is of other code.
         """
-        numbers = list(frames) if isinstance(frames, Iterable) else [frames]
-        return joined([self._again.frame(index) for index in self.flown.chosen(numbers)])
+        if not isinstance(frames, Iterable):
+            return self.waveforms([frames]).isel(frame=0)
+        return joined([self._again.frame(index) for index in self.flown.chosen(list(frames))])
 
     @cached_property
     def _again(self) -> PickedPixels:

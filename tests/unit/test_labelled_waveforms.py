@@ -119,7 +119,7 @@ def test_counts_and_tags_are_those_that_the_run_kept(run: FlownRun, found: xarra
 def test_an_opened_run_gives_the_same_waveforms(run: FlownRun, found: xarray.Dataset) -> None:
     waves = open_run(run.folder).waveforms([0, 2])
     assert waves.equals(found.isel(frame=[0, 2]).drop_dims("tag").load().merge(waves[TAGS]))
-    assert open_run(run.folder).waveforms(2).frame.values.tolist() == [2]
+    assert open_run(run.folder).waveforms(2).counts.equals(found.counts.sel(frame=2))
 
 
 def test_time_tags_fall_into_the_bins_of_their_pixel(found: xarray.Dataset) -> None:

@@ -1,0 +1,51 @@
+"""Fly every scenario of the gallery, draw each, and write docs/gallery.md: `make gallery`.
+
+Flights go on where they stopped; what is flown already, by the same code, is not flown again.
+`python -m tools.gallery NAME ...` takes these alone; --draw-only takes the runs as they stand.
+"""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+
+from survey import open_run
+from survey.products.writing import write_whole
+from survey.scenario.gallery import gallery
+from tools.gallery.flights import fly_anew
+from tools.gallery.page import page
+from tools.gallery.pictures import picture
+
+ROOT = Path(__file__).parents[2]
+RUNS, DOCS = ROOT / "runs/gallery", ROOT / "docs"
+
+
+def main() -> None:
+    """Fly, draw and write."""
+    asked = arguments()
+    for name in asked.names:
+        print(f"{name}:", flush=True)
+        if not asked.draw_only:
+            fly_anew(name, RUNS / name)
+        write_whole(DOCS / f"gallery/{name}.png", picture(name, open_run(RUNS / name)))
+    missing = [name for name in gallery() if not (RUNS / name / "metrics.json").exists()]
+    if missing:
+        print(f"no page yet, these are not flown: {', '.join(missing)}")
+        return
+    runs = {name: open_run(RUNS / name) for name in gallery()}
+    write_whole(DOCS / "gallery.md", page(runs).encode())
+    print(f"written: {DOCS / 'gallery.md'}")
+
+
+def arguments() -> Namespace:
+    """Return what was asked for."""
+    parser = ArgumentParser(prog="python -m tools.gallery", description=__doc__)
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    parser.add_argument("--draw-only", action="store_true", help="fly nothing")
+    asked = parser.parse_args()
+    asked.names = asked.names or list(gallery())
+    return asked
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,86 @@
+"""docs/gallery.md: what every scenario shows, what to expect, its picture and its figures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from survey import load_scenario
+from survey.opened.run import Run
+from survey.scenario.gallery import gallery, shows
+from tools.gallery.pictures import kind
+
+HEAD = """# Gallery
+
+Every scenario that comes with bathyflash, flown whole. `bathyflash scenarios` lists them,
+`bathyflash run NAME -o runs/NAME` flies one. The words are those at the head of each scenario's
+file; `make gallery` makes pictures and figures from the runs.
+
+Errors are measured less true elevation of all bottom points; false are those more than 1 m off.
+TVU and THU are the shares of points whose stated uncertainty of 95 % holds.
+"""
+COLUMNS = ("scenario", "shows", "bottom points", "false", "bias", "95 % within", "TVU", "THU")
+
+
+def page(runs: Mapping[str, Run]) -> str:
+    """Return the page of runs by the names of their scenarios."""
+    table = [COLUMNS, ("---",) * len(COLUMNS), *(row(name, run) for name, run in runs.items())]
+    lines = ["| " + " | ".join(cells) + " |" for cells in table]
+    return "\n".join([HEAD, *lines, "", *(part(name, run) for name, run in runs.items())])
+
+
+def row(name: str, run: Run) -> tuple[str, ...]:
+    """Return a scenario's line in the table."""
+    found = run.metrics
+    return (
+        f"[{name}](#{name})",
+        shows(gallery()[name]).rstrip("."),
+        f"{found['points_bottom']:,}",
+        f"{found['false_bottoms']:,}",
+        metres(found["bias_m"], "+.3f"),
+        metres(found["p95_abs_error_m"], ".3f"),
+        share(found["tvu_coverage"]),
+        share(found["thu_coverage"]),
+    )
+
+
+def part(name: str, run: Run) -> str:
+    """Return what the page says of one scenario."""
+    mission = load_scenario(name).mission
+    return f"""## {name}
+
+**{mission.title}.** {mission.description.strip()}
+
+![{mission.title}](gallery/{name}.png)
+
+*{kind(name).caption}*
+
+**Expect:** {mission.expect.strip()}
+
+**Measured:** {measured(run.metrics)}
+"""
+
+
+def measured(found: Mapping[str, Any]) -> str:
+    """Return what a run measured, in a sentence or two."""
+    flown = f"{found['frames']} frames, {found['points_surface']:,} points of the sea surface"
+    if not found["points_bottom"]:
+        return f"{flown}, no bottom point."
+    return (
+        f"{flown}, {found['points_bottom']:,} of the bottom, {found['false_bottoms']:,} of them "
+        f"false. Bias {metres(found['bias_m'], '+.3f')}, 95 % within "
+        f"{metres(found['p95_abs_error_m'], '.3f')}; TVU, in the median "
+        f"{metres(found['tvu_median_m'], '.2f')}, holds for {share(found['tvu_coverage'])}, THU, "
+        f"{metres(found['thu_median_m'], '.2f')}, for {share(found['thu_coverage'])}. "
+        f"{share(found['coverage_fraction'])} of the wet area was seen."
+    )
+
+
+def metres(value: float | None, form: str) -> str:
+    """Return a length in metres."""
+    return "none" if value is None else f"{value:{form}} m"
+
+
+def share(value: float | None) -> str:
+    """Return a share in per cent."""
+    return "none" if value is None else f"{100.0 * value:.1f} %"
