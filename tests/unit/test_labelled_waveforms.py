@@ -83,7 +83,8 @@ def scenario(tmp_path_factory: pytest.TempPathFactory) -> Scenario:
 
 @pytest.fixture(scope="module")
 def run(scenario: Scenario, tmp_path_factory: pytest.TempPathFactory) -> FlownRun:
-    return FlownRun.open(fly(scenario, tmp_path_factory.mktemp("run") / "run", workers=1))
+    folder = str(tmp_path_factory.mktemp("run") / "run")
+    return FlownRun.open(fly(scenario, folder, workers=1))
 
 
 @pytest.fixture(scope="module")
@@ -117,9 +118,11 @@ def test_counts_and_tags_are_those_that_the_run_kept(run: FlownRun, found: xarra
 
 
 def test_an_opened_run_gives_the_same_waveforms(run: FlownRun, found: xarray.Dataset) -> None:
-    waves = open_run(run.folder).waveforms([0, 2])
+    opened = open_run(run.folder)
+    assert len(opened.surface) == opened.metrics["points_surface"] > 0
+    waves = opened.waveforms([0, 2])
     assert waves.equals(found.isel(frame=[0, 2]).drop_dims("tag").load().merge(waves[TAGS]))
-    assert open_run(run.folder).waveforms(2).counts.equals(found.counts.sel(frame=2))
+    assert opened.waveforms(2).counts.equals(found.counts.sel(frame=2))
 
 
 def test_time_tags_fall_into_the_bins_of_their_pixel(found: xarray.Dataset) -> None:
