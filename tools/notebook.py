@@ -40,7 +40,8 @@ def executed(notebook: Path) -> bytes:
     for cell in pages.cells:
         if cell.cell_type == "code":
             cell.outputs = [part for part in cell.outputs if part.get("name") != "stderr"]
-    return (nbformat.writes(pages) + "\n").encode()
+    text: str = nbformat.writes(pages)
+    return f"{text}\n".encode()
 
 
 def main() -> None:

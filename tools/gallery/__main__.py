@@ -9,10 +9,10 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from survey import open_run
 from survey.products.writing import write_whole
+from survey.run_identity import MANIFEST
 from survey.scenario.gallery import gallery
-from tools.gallery.flights import fly_anew
+from tools.gallery.flights import fly_anew, metrics_of
 from tools.gallery.page import page
 from tools.gallery.pictures import picture
 
@@ -27,13 +27,13 @@ def main() -> None:
         print(f"{name}:", flush=True)
         if not asked.draw_only:
             fly_anew(name, RUNS / name)
-        write_whole(DOCS / f"gallery/{name}.png", picture(name, open_run(RUNS / name)))
-    missing = [name for name in gallery() if not (RUNS / name / "metrics.json").exists()]
+        write_whole(DOCS / f"gallery/{name}.png", picture(name, RUNS / name))
+    missing = [name for name in gallery() if not (RUNS / name / MANIFEST).exists()]
     if missing:
         print(f"no page yet, these are not flown: {', '.join(missing)}")
         return
-    runs = {name: open_run(RUNS / name) for name in gallery()}
-    write_whole(DOCS / "gallery.md", page(runs).encode())
+    found = {name: metrics_of(RUNS / name) for name in gallery()}
+    write_whole(DOCS / "gallery.md", page(found).encode())
     print(f"written: {DOCS / 'gallery.md'}")
 
 

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Any
 
 from survey import load_scenario
-from survey.opened.run import Run
 from survey.scenario.gallery import gallery, shows
 from tools.gallery.pictures import kind
 
@@ -22,16 +21,15 @@ TVU and THU are the shares of points whose stated uncertainty of 95 % holds.
 COLUMNS = ("scenario", "shows", "bottom points", "false", "bias", "95 % within", "TVU", "THU")
 
 
-def page(runs: Mapping[str, Run]) -> str:
-    """Return the page of runs by the names of their scenarios."""
-    table = [COLUMNS, ("---",) * len(COLUMNS), *(row(name, run) for name, run in runs.items())]
+def page(runs: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return the page of metrics by the names of their scenarios."""
+    table = [COLUMNS, ("---",) * len(COLUMNS), *(row(name, found) for name, found in runs.items())]
     lines = ["| " + " | ".join(cells) + " |" for cells in table]
-    return "\n".join([HEAD, *lines, "", *(part(name, run) for name, run in runs.items())])
+    return "\n".join([HEAD, *lines, "", *(part(name, found) for name, found in runs.items())])
 
 
-def row(name: str, run: Run) -> tuple[str, ...]:
+def row(name: str, found: Mapping[str, Any]) -> tuple[str, ...]:
     """Return a scenario's line in the table."""
-    found = run.metrics
     return (
         f"[{name}](#{name})",
         shows(gallery()[name]).rstrip("."),
@@ -44,7 +42,7 @@ def row(name: str, run: Run) -> tuple[str, ...]:
     )
 
 
-def part(name: str, run: Run) -> str:
+def part(name: str, found: Mapping[str, Any]) -> str:
     """Return what the page says of one scenario."""
     mission = load_scenario(name).mission
     return f"""## {name}
@@ -57,15 +55,15 @@ def part(name: str, run: Run) -> str:
 
 **Expect:** {mission.expect.strip()}
 
-**Measured:** {measured(run.metrics)}
+**Measured:** {measured(found)}
 """
 
 
 def measured(found: Mapping[str, Any]) -> str:
     """Return what a run measured, in a sentence or two."""
-    flown = f"{found['frames']} frames, {found['points_surface']:,} points of the sea surface"
+    flown = f"{found['frames']} frames gave {found['points_surface']:,} points of the sea surface"
     if not found["points_bottom"]:
-        return f"{flown}, no bottom point."
+        return f"{flown} and no bottom, {found['false_bottoms']} false ones."
     return (
         f"{flown}, {found['points_bottom']:,} of the bottom, {found['false_bottoms']:,} of them "
         f"false. Bias {metres(found['bias_m'], '+.3f')}, 95 % within "
