@@ -78,9 +78,15 @@ KINDS = {
         draw=figure("errors"),
         caption="Measured less true elevation: each flash errs as a whole, in shallow water waves.",
     ),
+    "next-generation": Kind(
+        draw=figure("depth"), caption="Depths by cells; cubes and pipe stand out of the bed."
+    ),
     "paper-p02": SECTION,
     "paper-p05": SECTION,
     "paper-p07": SECTION,
+    "special-order": Kind(
+        draw=figure("depth"), caption="Depths by cells; the two cubes are yellow."
+    ),
     "too-deep": Kind(
         draw=waveform,
         caption="One pixel: light by origin and counts, and gates of counts below their threshold.",
