@@ -28,13 +28,14 @@ def main() -> None:
         if not asked.draw_only:
             fly_anew(name, RUNS / name)
         write_whole(DOCS / f"gallery/{name}.png", picture(name, RUNS / name))
-    missing = [name for name in gallery() if not (RUNS / name / MANIFEST).exists()]
-    if missing:
-        print(f"no page yet, these are not flown: {', '.join(missing)}")
-        return
-    found = {name: metrics_of(RUNS / name) for name in gallery()}
+    found = {name: metrics_of(RUNS / name) for name in gallery() if is_drawn(name)}
     write_whole(DOCS / "gallery.md", page(found).encode())
     print(f"written: {DOCS / 'gallery.md'}")
+
+
+def is_drawn(name: str) -> bool:
+    """Tell whether a scenario has a run and a picture; the page says which have not."""
+    return (RUNS / name / MANIFEST).exists() and (DOCS / f"gallery/{name}.png").exists()
 
 
 def arguments() -> Namespace:

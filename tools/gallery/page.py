@@ -18,21 +18,24 @@ file; `make gallery` makes pictures and figures from the runs.
 Errors are measured less true elevation of all bottom points; false are those more than 1 m off.
 TVU and THU are the shares of points whose stated uncertainty of 95 % holds.
 """
+NOT_FLOWN = "*Not flown for this page yet; `make gallery` does it.*"
 COLUMNS = ("scenario", "shows", "bottom points", "false", "bias", "95 % within", "TVU", "THU")
 
 
 def page(runs: Mapping[str, Mapping[str, Any]]) -> str:
-    """Return the page of metrics by the names of their scenarios."""
-    table = [COLUMNS, ("---",) * len(COLUMNS), *(row(name, found) for name, found in runs.items())]
+    """Return the page of metrics by the names of their scenarios; some may be missing."""
+    table = [COLUMNS, ("---",) * len(COLUMNS), *(row(name, runs.get(name)) for name in gallery())]
     lines = ["| " + " | ".join(cells) + " |" for cells in table]
-    return "\n".join([HEAD, *lines, "", *(part(name, found) for name, found in runs.items())])
+    return "\n".join([HEAD, *lines, "", *(part(name, runs.get(name)) for name in gallery())])
 
 
-def row(name: str, found: Mapping[str, Any]) -> tuple[str, ...]:
+def row(name: str, found: Mapping[str, Any] | None) -> tuple[str, ...]:
     """Return a scenario's line in the table."""
+    first = f"[{name}](#{name})", shows(gallery()[name]).rstrip(".")
+    if found is None:
+        return (*first, *[""] * (len(COLUMNS) - 2))
     return (
-        f"[{name}](#{name})",
-        shows(gallery()[name]).rstrip("."),
+        *first,
         f"{found['points_bottom']:,}",
         f"{found['false_bottoms']:,}",
         metres(found["bias_m"], "+.3f"),
@@ -42,18 +45,21 @@ def row(name: str, found: Mapping[str, Any]) -> tuple[str, ...]:
     )
 
 
-def part(name: str, found: Mapping[str, Any]) -> str:
+def part(name: str, found: Mapping[str, Any] | None) -> str:
     """Return what the page says of one scenario."""
     mission = load_scenario(name).mission
-    return f"""## {name}
+    words = f"""## {name}
 
 **{mission.title}.** {mission.description.strip()}
 
+**Expect:** {mission.expect.strip()}
+"""
+    if found is None:
+        return f"{words}\n{NOT_FLOWN}\n"
+    return f"""{words}
 ![{mission.title}](gallery/{name}.png)
 
 *{kind(name).caption}*
-
-**Expect:** {mission.expect.strip()}
 
 **Measured:** {measured(found)}
 """
