@@ -7,11 +7,13 @@ OTHER_RUN := 5
 
 SLOW := bad_input faults mutants physics regression scale scenarios statistics unit web
 
-.PHONY: help venv libraries chromium demo test slow bench check format site figures web-bundle $(SLOW:%=slow-%)
+.PHONY: help venv libraries chromium demo gallery notebook test slow bench check format site figures web-bundle $(SLOW:%=slow-%)
 
 help:
 	@echo "make venv    create .venv with all libraries"
 	@echo "make demo    fly a mission over a measured seabed and draw it: $(DEMO)/picture.png"
+	@echo "make gallery fly every scenario, and draw and write docs/gallery.md anew: half an hour"
+	@echo "make notebook execute docs/notebook.ipynb anew"
 	@echo "make check   format, lint, types and direction of imports"
 	@echo "make test    check, then all tests but the slow ones"
 	@echo "make slow    the slow tests; one part alone: make slow-NAME, $(SLOW)"
@@ -38,6 +40,13 @@ demo: libraries $(READY)
 	$(FLY) || { [ $$? -eq $(OTHER_RUN) ] && rm -rf $(DEMO) && $(FLY); }
 	$(BIN)/bathyflash view $(DEMO) --screenshot $(DEMO)/picture.png
 	@echo "picture: $(DEMO)/picture.png"
+
+# Goes on where it was stopped.
+gallery: libraries $(READY)
+	$(BIN)/python -m tools.gallery
+
+notebook: libraries $(READY)
+	$(BIN)/python -m tools.notebook
 
 check: $(READY)
 	$(BIN)/ruff format --check .

@@ -247,13 +247,13 @@ def adjust(
 
 @app.command()
 def scenarios() -> None:
-    """List the scenarios that come with the package."""
-    from survey.scenario.gallery import gallery, title
+    """List the scenarios that come with the package, and what each shows."""
+    from survey.scenario.gallery import gallery, shows
 
     names = gallery()
     width = max(map(len, names))
     for name, file in names.items():
-        typer.echo(f"{name:{width}}  {title(file)}")
+        typer.echo(f"{name:{width}}  {shows(file)}")
 
 
 @app.command()

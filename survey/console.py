@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -38,14 +39,16 @@ class PlainLines:
 
     Parameters
     ----------
-    stream : TextIO
-        Where the lines go.
+    stream : TextIO, optional
+        Where the lines go; standard output unless told.
     clock : callable
         Seconds on a clock that never goes back.
     """
 
-    def __init__(self, stream: TextIO, clock: Callable[[], float] = time.monotonic) -> None:
-        self._stream, self._clock = stream, clock
+    def __init__(
+        self, stream: TextIO | None = None, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._stream, self._clock = stream or sys.stdout, clock
         self._total = self._done = self._steps = self._written = 0
         self._start = self._last_line = 0.0
 

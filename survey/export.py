@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from survey.errors import UserError
 from survey.products.cells import CellGrid
@@ -72,6 +73,11 @@ class FinishedRun:
     def clouds(self) -> list[str]:
         """Names of the clouds that the run has; over land there is no water surface."""
         return [name for name in CLOUDS if (self.folder / f"{name}.laz").exists()]
+
+    @cached_property
+    def metrics(self) -> dict[str, Any]:
+        """What stands in metrics.json."""
+        return _metrics(self.folder)
 
     @cached_property
     def grid(self) -> ElevationGrid:
@@ -144,12 +150,17 @@ def _require_finished(folder: Path) -> None:
     again = "The same bathyflash run goes on from here"
     if not (folder / "metrics.json").exists() or not (folder / "bottom.laz").exists():
         raise UserError(f"{folder}: not finished: {flown} whole frames, no products. {again}")
-    covered = json.loads((folder / "metrics.json").read_text(encoding="utf-8"))["frames"]
+    covered = _metrics(folder)["frames"]
     if covered != flown:
         raise UserError(
             f"{folder}: {flown} whole frames, but products of {covered}: broken off or changed. "
             f"{again}"
         )
+
+
+def _metrics(folder: Path) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads((folder / "metrics.json").read_text(encoding="utf-8"))
+    return found
 
 
 def _las(suffix: str) -> Exporter:

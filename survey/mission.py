@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from functools import partial
@@ -138,7 +139,7 @@ def observe(mission: Mission, frame: Frame) -> Observation:
 
 def fly(
     scenario: Scenario,
-    folder: Path,
+    folder: str | os.PathLike[str],
     *,
     workers: int = 0,
     crew: Crew | None = None,
@@ -155,7 +156,7 @@ def fly(
     ----------
     scenario : Scenario
         What to fly.
-    folder : Path
+    folder : path
         Run folder: new, or of the same scenario.
     workers : int
         Processes of this machine; 0 is one for each core. The products do not depend on it.
@@ -166,7 +167,7 @@ def fly(
     refly : bool
         Remove what an earlier run left in the folder, whatever it was a run of.
     watch : Watcher, optional
-        Is told of the progress; ``log.txt`` in the folder is too.
+        Is told of the progress, such as `survey.PlainLines`; ``log.txt`` in the folder is too.
 
     Returns
     -------
@@ -184,15 +185,16 @@ def fly(
     ValueError
         When the flight leaves the seabed, or nothing at all was found: the text says why.
     """
-    require_free(folder)
+    path = Path(folder)
+    require_free(path)
     mission = prepare(scenario)
-    run = RunFolder.open(folder, scenario, refly=refly)
-    with sole_pilot(folder), logged(folder, watch or Unwatched()) as told:
+    run = RunFolder.open(path, scenario, refly=refly)
+    with sole_pilot(path), logged(path, watch or Unwatched()) as told:
         crew = crew or local_crew(workers)
         set_aside = _fly_missing(mission, scenario, run, crew=crew, frames=frames, watch=told)
         found = _write_products(mission, run, set_aside, told)
-        told.finished(summary(folder, found))
-    return folder
+        told.finished(summary(path, found))
+    return path
 
 
 def _fly_missing(

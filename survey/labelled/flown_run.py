@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -62,8 +62,8 @@ class FlownRun:
             raise UserError(f"{folder}: no whole frame in it. Fly it with: bathyflash run")
         return cls(folder=folder, scenario=scenario, identity=identity, whole=whole)
 
-    def chosen(self, frames: range | None) -> list[int]:
-        """Return the numbers of the frames in a range; None stands for all that are whole.
+    def chosen(self, frames: Sequence[int] | None) -> list[int]:
+        """Return the numbers of the frames asked for; None stands for all that are whole.
 
         Raises
         ------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,9 @@ from survey.products.depth_colours import depth_colours
 from survey.products.grids import ElevationMap
 from survey.products.writing import ProductError, require_read_back, whole_file
 from terrain.map_frame import MapFrame
+
+if TYPE_CHECKING:
+    import trimesh
 
 FloatArray = NDArray[np.float64]
 
@@ -43,6 +46,21 @@ def grid_surface(grid: ElevationMap, map_frame: MapFrame) -> tuple[FloatArray, N
     centres = grid.cells.centres()[filled]
     on_map = np.column_stack([centres, grid.elevation[filled]])
     return map_frame.to_local(on_map), faces
+
+
+def grid_mesh(grid: ElevationMap, map_frame: MapFrame, *, water_level: float) -> trimesh.Trimesh:
+    """Return the grid as a mesh coloured by depth, in the local frame, z up [m].
+
+    Raises
+    ------
+    ProductError
+        If no three neighbouring cells are filled.
+    """
+    import trimesh
+
+    vertices, faces = grid_surface(grid, map_frame)
+    colours = depth_colours(water_level - vertices[:, 2])
+    return trimesh.Trimesh(vertices, faces, vertex_colors=colours, process=False)
 
 
 def has_triangles(grid: ElevationMap) -> bool:

@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.products.depth_colours import depth_colours
 from survey.products.grids import ElevationGrid
 from survey.products.json_file import write_json
-from survey.products.mesh_files import grid_surface, place_on_map
+from survey.products.mesh_files import grid_mesh, place_on_map
 from survey.products.writing import require_read_back, whole_file
 from terrain.map_frame import MapFrame
 
@@ -48,9 +47,7 @@ def write_bathymetry_mesh(
     """
     import trimesh
 
-    vertices, faces = grid_surface(grid, map_frame)
-    colours = depth_colours(water_level - vertices[:, 2])
-    mesh = trimesh.Trimesh(vertices, faces, vertex_colors=colours, process=False)
+    mesh = grid_mesh(grid, map_frame, water_level=water_level)
     content = _WRITERS[path.suffix](mesh)
     with whole_file(path) as partial:
         partial.write_bytes(content)

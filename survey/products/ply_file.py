@@ -178,6 +178,23 @@ def read_ply(path: Path) -> tuple[PointCloud, MapFrame]:
     ProductError
         If the file is another kind of PLY or is cut short.
     """
+    records, map_frame = read_records(path)
+    places: dict[str, Any] = {
+        name: map_frame.to_local(_triple(records, prefix)) for name, prefix in TRIPLES.items()
+    }
+    normals: dict[str, Any] = {name: _triple(records, prefix) for name, prefix in NORMALS.items()}
+    scalars = {name: records[column].copy() for name, column in COLUMNS.items()}
+    return PointCloud(**places, **normals, **scalars), map_frame
+
+
+def read_records(path: Path) -> tuple[NDArray[np.void], MapFrame]:
+    """Read the points of a PLY of ours as they stand in it, `PLY_RECORD`, and its map frame.
+
+    Raises
+    ------
+    ProductError
+        If the file is another kind of PLY or is cut short.
+    """
     comments, records = _read(path)
     try:
         map_frame = MapFrame(
@@ -188,12 +205,7 @@ def read_ply(path: Path) -> tuple[PointCloud, MapFrame]:
         )
     except KeyError as missing:
         raise ProductError(f"{path}: header: no comment {missing}. Use a bathyflash PLY") from None
-    places: dict[str, Any] = {
-        name: map_frame.to_local(_triple(records, prefix)) for name, prefix in TRIPLES.items()
-    }
-    normals: dict[str, Any] = {name: _triple(records, prefix) for name, prefix in NORMALS.items()}
-    scalars = {name: records[column].copy() for name, column in COLUMNS.items()}
-    return PointCloud(**places, **normals, **scalars), map_frame
+    return records, map_frame
 
 
 def _records(cloud: PointCloud, map_frame: MapFrame) -> NDArray[np.void]:

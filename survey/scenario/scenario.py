@@ -81,11 +81,19 @@ class Scenario:
             raise ScenarioError(name, faults)
         return cls(name=name, folder=folder, given=tables, **cast("dict[str, Any]", sound))
 
-    def replace(self, **changes: Any) -> Scenario:
-        """Return a checked variation: ``scenario.replace(**{"water.type": "clear"})``.
+    def replace(self, changes: Mapping[str, Any] | None = None, /, **more: Any) -> Scenario:
+        """Return a checked variation.
 
         A dotted key changes one value, a section's name with a table changes the whole section,
-        and the value None goes back to the default.
+        and the value None goes back to the default. As arguments, keys have two underscores in
+        place of the dot.
+
+        Parameters
+        ----------
+        changes : mapping, optional
+            Values by dotted key, such as ``{"water.type": "clear"}``.
+        **more
+            Others, such as ``water__type="clear"``.
 
         Raises
         ------
@@ -95,12 +103,14 @@ class Scenario:
         Examples
         --------
         >>> from survey import load_scenario
-        >>> by_day = load_scenario("wreck")
-        >>> by_night = by_day.replace(**{"sun.day": False, "mission.seed": 7})
-        >>> by_day.sun.day, by_night.sun.day, by_night.mission.seed
-        (True, False, 7)
+        >>> wide = load_scenario("sandbar").replace(receiver__aperture_radius_m=0.01)
+        >>> wide.receiver.aperture_radius_m
+        0.01
+        >>> wide.replace({"receiver.aperture_radius_m": 0.02}).receiver.aperture_radius_m
+        0.02
         """
-        tables = with_changes(self.given, changes, name=self.name)
+        named = {key.replace("__", "."): value for key, value in more.items()}
+        tables = with_changes(self.given, {**(changes or {}), **named}, name=self.name)
         return Scenario.from_tables(tables, name=self.name, folder=self.folder)
 
     def to_toml(self, *, beside: Path | None = None) -> str:

@@ -14,6 +14,7 @@ from typer.testing import CliRunner
 
 from survey.cli import app
 from survey.errors import OtherRunError
+from survey.scenario.gallery import gallery
 from survey.scenario.toml_text import to_toml
 
 HEAVY = {"open3d", "pyvista", "vtkmodules", "matplotlib", "trimesh", "rasterio", "laspy", "numba"}
@@ -165,11 +166,13 @@ def test_view_of_nothing_has_status_3(tmp_path: Path) -> None:
     assert str(tmp_path / "none") in result.stderr
 
 
-def test_the_gallery_is_listed_with_titles() -> None:
+def test_the_gallery_is_listed_with_a_line_each() -> None:
     result = typed("scenarios")
     assert result.exit_code == 0
-    assert "sandbar           Sandbar" in result.stdout
-    assert len(result.stdout.splitlines()) >= 5
+    assert "sandbar           Two lines out from a made beach over a bar" in result.stdout
+    lines = result.stdout.splitlines()
+    assert len(lines) == len(gallery())
+    assert max(map(len, lines)) <= 120
 
 
 def test_help_and_check_load_no_heavy_library(file: Path) -> None:

@@ -13,6 +13,7 @@ import xarray
 from scipy.constants import speed_of_light
 from typer.testing import CliRunner, Result
 
+from survey import open_run
 from survey.cli import app
 from survey.cloud.points import Outcome
 from survey.errors import OtherRunError, UserError
@@ -30,6 +31,7 @@ from survey.scenario.scenario import Scenario
 
 PAGE = Path(__file__).parents[2] / "docs/waveforms.md"
 CAMERA = (4, 8)
+TAGS = ["tag_time", "tag_pulse"]
 ALL = Pixels.every(1, CAMERA)
 TABLES: dict[str, Any] = {
     "mission": {"title": "a test", "start_utc": "2026-06-21T12:00:00+02:00"},
@@ -81,7 +83,8 @@ def scenario(tmp_path_factory: pytest.TempPathFactory) -> Scenario:
 
 @pytest.fixture(scope="module")
 def run(scenario: Scenario, tmp_path_factory: pytest.TempPathFactory) -> FlownRun:
-    return FlownRun.open(fly(scenario, tmp_path_factory.mktemp("run") / "run", workers=1))
+    folder = str(tmp_path_factory.mktemp("run") / "run")
+    return FlownRun.open(fly(scenario, folder, workers=1))
 
 
 @pytest.fixture(scope="module")
@@ -112,6 +115,14 @@ def test_counts_and_tags_are_those_that_the_run_kept(run: FlownRun, found: xarra
         assert np.array_equal(found.tag_pulse[own], raw.tag_pulse[order])
     assert found.counts.dtype == np.uint16
     assert int(found.tag_count.sum()) == found.sizes["tag"] == int(found.counts.sum())
+
+
+def test_an_opened_run_gives_the_same_waveforms(run: FlownRun, found: xarray.Dataset) -> None:
+    opened = open_run(run.folder)
+    assert len(opened.surface) == opened.metrics["points_surface"] > 0
+    waves = opened.waveforms([0, 2])
+    assert waves.equals(found.isel(frame=[0, 2]).drop_dims("tag").load().merge(waves[TAGS]))
+    assert opened.waveforms(2).counts.equals(found.counts.sel(frame=2))
 
 
 def test_time_tags_fall_into_the_bins_of_their_pixel(found: xarray.Dataset) -> None:
