@@ -72,7 +72,8 @@ def test_a_program_of_its_own_says_the_same(case: Case, tmp_path: Path, scored: 
         stderr=subprocess.PIPE,
     )
     assert program.stderr is not None
-    said = program.stderr.read().decode()
+    with program.stderr as told:
+        said = told.read().decode()
     _, status, used = os.wait4(program.pid, 0)
     program.returncode = os.waitstatus_to_exitcode(status)
     assert program.returncode == case.status, said
