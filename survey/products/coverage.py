@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from survey.cloud.points import Outcome, PixelRecord
 from survey.products.cells import CellGrid, inside_ring
 from survey.products.json_file import json_bytes
+from survey.products.lon_lat import lon_lat
 from survey.products.pixels import SEEN
 from survey.products.writing import ProductError, write_whole
 from terrain.map_frame import MapFrame
@@ -30,8 +31,6 @@ SEEN_RANK = np.uint32(10**9)
 
 PLACES_AT_ONCE = 1 << 18
 MIN_HOLE_AREA = 50.0
-DEGREE_DECIMALS = 8
-"""1e-8 degrees are about a millimetre."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -224,15 +223,11 @@ def map_feature(
     rings: list[FloatArray], map_frame: MapFrame, properties: dict[str, str]
 ) -> dict[str, Any]:
     """Return rings on the map as a GeoJSON polygon with its properties and its area."""
-    from pyproj import Transformer
-
-    to_wgs84 = Transformer.from_crs(map_frame.epsg, 4326, always_xy=True)
     coordinates = []
     for number, ring in enumerate(rings):
         counter_clockwise = _signed_area(ring) > 0.0
         right_handed = ring if counter_clockwise == (number == 0) else ring[::-1]
-        lon_lat = np.column_stack(to_wgs84.transform(right_handed[:, 0], right_handed[:, 1]))
-        coordinates.append(lon_lat.round(DEGREE_DECIMALS).tolist())
+        coordinates.append(lon_lat(right_handed, epsg=map_frame.epsg).tolist())
     return {
         "type": "Feature",
         "properties": {**properties, "area_m2": round(_area(rings), 3)},

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from survey.flight.pose import Frame
-from survey.products.coverage import DEGREE_DECIMALS
 from survey.products.json_file import json_bytes
+from survey.products.lon_lat import lon_lat
 from survey.products.writing import write_whole
 from terrain.map_frame import MapFrame
 
@@ -42,12 +42,8 @@ def write_lines_geojson(path: Path, frames: Sequence[Frame], map_frame: MapFrame
 
 
 def _feature(line: int, frames: Sequence[Frame], map_frame: MapFrame) -> dict[str, Any]:
-    from pyproj import Transformer
-
     places = map_frame.to_map(np.array([frame.measured.position for frame in frames]))
-    to_wgs84 = Transformer.from_crs(map_frame.epsg, 4326, always_xy=True)
-    lon_lat = np.column_stack(to_wgs84.transform(places[:, 0], places[:, 1]))
-    coordinates = lon_lat.round(DEGREE_DECIMALS).tolist()
+    coordinates = lon_lat(places, epsg=map_frame.epsg).tolist()
     single = len(frames) == 1
     return {
         "type": "Feature",

@@ -15,6 +15,7 @@ from survey.cloud.truth import FALSE_BOTTOM_ERROR
 from survey.products.cells import CellGrid
 from survey.products.coverage import SHADOW, cell_polygons, hole_cause, map_feature
 from survey.products.json_file import json_bytes
+from survey.products.lon_lat import lon_lat
 from survey.products.standards import Order
 from survey.products.standards.orders import WITHIN
 from survey.products.verdict.features import FoundCube
@@ -159,14 +160,11 @@ class FailureMap:
 
 
 def _lost(cube: FoundCube, title: str, map_frame: MapFrame) -> dict[str, Any]:
-    from pyproj import Transformer
-
-    place = map_frame.to_map(np.array([cube.cube.east, cube.cube.north, 0.0]))
-    to_wgs84 = Transformer.from_crs(map_frame.epsg, 4326, always_xy=True)
-    lon, lat = to_wgs84.transform(place[0], place[1])
+    place = map_frame.to_map(np.array([[cube.cube.east, cube.cube.north, 0.0]]))
+    (coordinates,) = lon_lat(place, epsg=map_frame.epsg).tolist()
     cause = f"cube of {cube.cube.side:g} m not found"
     return {
         "type": "Feature",
         "properties": {"order": title, "cause": cause, "points": cube.points},
-        "geometry": {"type": "Point", "coordinates": [round(lon, 8), round(lat, 8)]},
+        "geometry": {"type": "Point", "coordinates": coordinates},
     }
