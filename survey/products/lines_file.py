@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 
 from survey.flight.pose import Frame
-from survey.products.json_file import json_bytes
+from survey.products.feature_file import write_features
 from survey.products.lon_lat import lon_lat
-from survey.products.writing import write_whole
 from terrain.map_frame import MapFrame
 
 HEIGHT_DECIMALS = 3
@@ -37,8 +36,7 @@ def write_lines_geojson(path: Path, frames: Sequence[Frame], map_frame: MapFrame
     by_line: dict[int, list[Frame]] = {}
     for frame in frames:
         by_line.setdefault(frame.line, []).append(frame)
-    features = [_feature(line, flown, map_frame) for line, flown in by_line.items()]
-    write_whole(path, json_bytes({"type": "FeatureCollection", "features": features}))
+    write_features(path, (_feature(line, flown, map_frame) for line, flown in by_line.items()))
 
 
 def _feature(line: int, frames: Sequence[Frame], map_frame: MapFrame) -> dict[str, Any]:

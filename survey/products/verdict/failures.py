@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -14,14 +14,13 @@ from survey.cloud.points import BOTTOM_CLASSES, Outcome, PointCloud
 from survey.cloud.truth import FALSE_BOTTOM_ERROR
 from survey.products.cells import CellGrid
 from survey.products.coverage import SHADOW, cell_polygons, hole_cause, map_feature
-from survey.products.json_file import json_bytes
+from survey.products.feature_file import write_features
 from survey.products.lon_lat import lon_lat
 from survey.products.standards import Order
 from survey.products.standards.orders import WITHIN
 from survey.products.verdict.features import FoundCube
 from survey.products.verdict.passes import Passes
 from survey.products.verdict.tally import errors_of
-from survey.products.writing import write_whole
 from terrain.map_frame import MapFrame
 
 FloatArray = NDArray[np.float64]
@@ -150,13 +149,14 @@ class FailureMap:
 
         Features have ``order``, ``cause`` and, if they are areas, ``area_m2``.
         """
+        write_features(path, self._features(map_frame))
+
+    def _features(self, map_frame: MapFrame) -> Iterator[dict[str, Any]]:
         wrong = self.state > MEETS
-        features: list[dict[str, Any]] = [
-            map_feature(rings, map_frame, {"order": self.title, "cause": self.cause(state)})
-            for rings, state in cell_polygons(self.state, wrong, self.passes.cells)
-        ]
-        features += [_lost(cube, self.title, map_frame) for cube in self.lost]
-        write_whole(path, json_bytes({"type": "FeatureCollection", "features": features}))
+        for rings, state in cell_polygons(self.state, wrong, self.passes.cells):
+            yield map_feature(rings, map_frame, {"order": self.title, "cause": self.cause(state)})
+        for cube in self.lost:
+            yield _lost(cube, self.title, map_frame)
 
 
 def _lost(cube: FoundCube, title: str, map_frame: MapFrame) -> dict[str, Any]:
