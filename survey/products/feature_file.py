@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 from zlib import crc32
 
 from survey.products.writing import require_read_back, whole_file
@@ -58,12 +58,12 @@ def write_features(path: Path, features: Iterable[Mapping[str, Any]]) -> None:
                 write(separator + MARGIN + text.replace("\n", MARGIN))
                 separator = ","
             write(("\n  " if separator else "") + TAIL)
-        with partial.open("rb") as file:
-            require_read_back(path, "bytes", _checksum(file) == checksum)
+        require_read_back(path, "bytes", _checksum(partial) == checksum)
 
 
-def _checksum(file: BinaryIO) -> int:
+def _checksum(path: Path) -> int:
     checksum = 0
-    while content := file.read(BYTES_AT_ONCE):
-        checksum = crc32(content, checksum)
+    with path.open("rb") as file:
+        while content := file.read(BYTES_AT_ONCE):
+            checksum = crc32(content, checksum)
     return checksum

@@ -66,19 +66,17 @@ class FailureCells:
         """Decide on some cells, by default all, with all points in them."""
         window = self.cells.window(cells or self.cells)
         part = self.cells.part(window)
-        cloud = cloud.select(
-            np.isin(cloud.classification, BOTTOM_CLASSES) & np.isfinite(cloud.true_elevation)
-        )
         on_map = cloud.position + self.origin
-        here = part.contains(on_map)
-        cloud, cell = cloud.select(here), part.index_of(on_map[here])
-        error, aside = errors_of(cloud)
-        depth = np.maximum(self.water_level - cloud.true_elevation, 0.0)
+        here = np.isin(cloud.classification, BOTTOM_CLASSES) & np.isfinite(cloud.true_elevation)
+        here &= part.contains(on_map)
+        cell = part.index_of(on_map[here])
+        error, aside = (of_points[here] for of_points in errors_of(cloud))
+        depth = np.maximum(self.water_level - cloud.true_elevation[here], 0.0)
 
         def counted(which: NDArray[np.bool_]) -> NDArray[np.intp]:
             return np.bincount(cell[which], minlength=part.rows * part.columns)
 
-        allowed = (1.0 - WITHIN) * counted(np.ones(len(cloud), dtype=np.bool_))
+        allowed = (1.0 - WITHIN) * counted(np.ones(len(cell), dtype=np.bool_))
         tvu = counted(np.abs(error) > self.order.tvu(depth))
         thu = counted(aside > self.order.thu(depth))
         false = counted(np.abs(error) > FALSE_BOTTOM_ERROR)
