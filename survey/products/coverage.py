@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +13,10 @@ from numpy.typing import NDArray
 
 from survey.cloud.points import Outcome, PixelRecord
 from survey.products.cells import CellGrid, inside_ring
-from survey.products.json_file import json_bytes
+from survey.products.feature_file import write_features
+from survey.products.lon_lat import lon_lat
 from survey.products.pixels import SEEN
-from survey.products.writing import ProductError, write_whole
+from survey.products.writing import ProductError
 from terrain.map_frame import MapFrame
 from terrain.nearness import count_near
 
@@ -30,8 +32,6 @@ SEEN_RANK = np.uint32(10**9)
 
 PLACES_AT_ONCE = 1 << 18
 MIN_HOLE_AREA = 50.0
-DEGREE_DECIMALS = 8
-"""1e-8 degrees are about a millimetre."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -187,52 +187,43 @@ def write_coverage_geojson(
     min_hole_area : float
         Holes smaller than this are left out [m2].
     """
-    features = [*_covered(coverage, map_frame), *_holes(coverage, map_frame, min_hole_area)]
-    write_whole(path, json_bytes({"type": "FeatureCollection", "features": features}))
+    covered, holes = _covered(coverage, map_frame), _holes(coverage, map_frame, min_hole_area)
+    write_features(path, chain(covered, holes))
 
 
-def _covered(coverage: CoverageMap, map_frame: MapFrame) -> list[dict[str, Any]]:
+def _covered(coverage: CoverageMap, map_frame: MapFrame) -> Iterator[dict[str, Any]]:
     covered = coverage.covered
-    return [
-        map_feature(rings, map_frame, {"kind": "covered"})
-        for rings, _ in cell_polygons(covered.astype(np.int16), covered, coverage.cells)
-    ]
+    for rings, _ in cell_polygons(covered.astype(np.int16), covered, coverage.cells):
+        yield map_feature(rings, map_frame, {"kind": "covered"})
 
 
-def _holes(coverage: CoverageMap, map_frame: MapFrame, min_area: float) -> list[dict[str, Any]]:
+def _holes(coverage: CoverageMap, map_frame: MapFrame, min_area: float) -> Iterator[dict[str, Any]]:
     missing = ~coverage.covered & (coverage.state != OUTSIDE_AREA)
-    return [
-        map_feature(rings, map_frame, {"kind": "hole", "cause": coverage.cause(state)})
-        for rings, state in cell_polygons(coverage.state, missing, coverage.cells)
-        if _area(rings) > min_area
-    ]
+    for rings, state in cell_polygons(coverage.state, missing, coverage.cells):
+        if _area(rings) > min_area:
+            yield map_feature(rings, map_frame, {"kind": "hole", "cause": coverage.cause(state)})
 
 
 def cell_polygons(
     values: NDArray[np.int16], mask: NDArray[np.bool_], cells: CellGrid
-) -> list[tuple[list[FloatArray], int]]:
-    """Return the rings on the map around the cells of a mask that have one value, and the value."""
+) -> Iterator[tuple[list[FloatArray], int]]:
+    """Yield the rings on the map around the cells of a mask that have one value, and the value."""
     from rasterio.features import shapes
 
     found = shapes(values, mask=mask, connectivity=4, transform=cells.transform)
-    return [
-        ([np.array(ring) for ring in shape["coordinates"]], int(value)) for shape, value in found
-    ]
+    for shape, value in found:
+        yield [np.array(ring) for ring in shape["coordinates"]], int(value)
 
 
 def map_feature(
     rings: list[FloatArray], map_frame: MapFrame, properties: dict[str, str]
 ) -> dict[str, Any]:
     """Return rings on the map as a GeoJSON polygon with its properties and its area."""
-    from pyproj import Transformer
-
-    to_wgs84 = Transformer.from_crs(map_frame.epsg, 4326, always_xy=True)
     coordinates = []
     for number, ring in enumerate(rings):
         counter_clockwise = _signed_area(ring) > 0.0
         right_handed = ring if counter_clockwise == (number == 0) else ring[::-1]
-        lon_lat = np.column_stack(to_wgs84.transform(right_handed[:, 0], right_handed[:, 1]))
-        coordinates.append(lon_lat.round(DEGREE_DECIMALS).tolist())
+        coordinates.append(lon_lat(right_handed, epsg=map_frame.epsg).tolist())
     return {
         "type": "Feature",
         "properties": {**properties, "area_m2": round(_area(rings), 3)},

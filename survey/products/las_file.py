@@ -307,12 +307,12 @@ class Views:
 
 def _extra_columns(cloud: PointCloud, map_frame: MapFrame) -> dict[str, NDArray[Any]]:
     places = {
-        "uncorrected": cloud.uncorrected,
-        "true": cloud.truth,
-        "true_surface": cloud.true_surface,
+        "uncorrected": map_frame.to_map(cloud.uncorrected),
+        "true": map_frame.to_map(cloud.truth),
+        "true_surface": map_frame.to_map(cloud.true_surface),
     }
     columns: dict[str, NDArray[Any]] = {
-        f"{prefix}_{axis}": _compressible(map_frame.to_map(place)[:, index])
+        f"{prefix}_{axis}": _compressible(place[:, index])
         for prefix, place in places.items()
         for index, axis in enumerate("xyz")
     }

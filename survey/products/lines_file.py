@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 
 from survey.flight.pose import Frame
-from survey.products.coverage import DEGREE_DECIMALS
-from survey.products.json_file import json_bytes
-from survey.products.writing import write_whole
+from survey.products.feature_file import write_features
+from survey.products.lon_lat import lon_lat
 from terrain.map_frame import MapFrame
 
 HEIGHT_DECIMALS = 3
@@ -37,17 +36,12 @@ def write_lines_geojson(path: Path, frames: Sequence[Frame], map_frame: MapFrame
     by_line: dict[int, list[Frame]] = {}
     for frame in frames:
         by_line.setdefault(frame.line, []).append(frame)
-    features = [_feature(line, flown, map_frame) for line, flown in by_line.items()]
-    write_whole(path, json_bytes({"type": "FeatureCollection", "features": features}))
+    write_features(path, (_feature(line, flown, map_frame) for line, flown in by_line.items()))
 
 
 def _feature(line: int, frames: Sequence[Frame], map_frame: MapFrame) -> dict[str, Any]:
-    from pyproj import Transformer
-
     places = map_frame.to_map(np.array([frame.measured.position for frame in frames]))
-    to_wgs84 = Transformer.from_crs(map_frame.epsg, 4326, always_xy=True)
-    lon_lat = np.column_stack(to_wgs84.transform(places[:, 0], places[:, 1]))
-    coordinates = lon_lat.round(DEGREE_DECIMALS).tolist()
+    coordinates = lon_lat(places, epsg=map_frame.epsg).tolist()
     single = len(frames) == 1
     return {
         "type": "Feature",

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from datetime import datetime
-from itertools import chain, islice
 from pathlib import Path
 from typing import Any
 
@@ -22,25 +21,23 @@ from survey.products.accuracy import Accuracy
 from survey.products.coverage import CoverageTally, write_coverage_geojson
 from survey.products.depth_profile import DepthProfile
 from survey.products.first_look import FirstLook
-from survey.products.frame_file import FrameResult
 from survey.products.grids import Overview, error_places, gridded, solid_places, solid_tvu
 from survey.products.json_file import write_json
 from survey.products.las_file import laz_file
 from survey.products.lines_file import write_lines_geojson
-from survey.products.map_tiles import map_tiles
 from survey.products.mesh_files import has_triangles, write_bathymetry_glb
 from survey.products.ply_file import ply_file
-from survey.products.read_ahead import read_ahead
 from survey.products.report.page import Figure
 from survey.products.report.report import Findings, write_report
 from survey.products.shadows import with_shadows
+from survey.products.stitching import ReadFrame, first_look, stitched_tiles
 from survey.products.strip_differences import (
     DIFFERENCES,
     overlap_metrics,
     strip_differences_tif,
 )
 from survey.products.tif_file import bathymetry_tif
-from survey.products.tile_points import TilePoints, tile_points
+from survey.products.tile_points import TilePoints
 from survey.products.track_files import TrackFormat, write_trajectory_files
 from survey.products.trajectory_file import write_trajectory_csv
 from survey.products.uncertainty_check import UncertaintyTally
@@ -53,8 +50,6 @@ from terrain.map_frame import MapFrame
 from terrain.seabed import Seabed
 
 FloatArray = NDArray[np.float64]
-ReadFrame = Callable[[int], FrameResult]
-POINTS_OF_A_TILE, FRAMES_AT_ONCE = 400_000, 8
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,7 +157,7 @@ def write_products(
         When no bottom and no land was found; the text says why.
     """
     map_frame, watch = seabed.map_frame, watch or Unwatched()
-    look = _first_look(read, frames, map_frame, watch)
+    look = first_look(read, frames, map_frame, watch)
     look.require_bottom()
     area = look.hull.ring() if settings.survey_area is None else settings.survey_area
     raster = look.raster(cell_size=settings.grid)
@@ -193,7 +188,17 @@ def write_products(
         bathymetry_tif(folder / "bathymetry.tif", raster, map_frame) as add_cells,
         strip_differences_tif(folder / DIFFERENCES, raster, map_frame) as add_lines,
     ):
-        for part in _parts(look, read, frames, map_frame, settings, watch):
+        tiles = stitched_tiles(
+            look,
+            read,
+            frames,
+            map_frame,
+            grid=settings.grid,
+            thinning=settings.thinning,
+            reach=settings.reach,
+            watch=watch,
+        )
+        for part in tiles:
             grid = gridded(
                 solid_places(part.bottom, map_frame), part.tile.cells, solid_tvu(part.bottom)
             )
@@ -258,45 +263,6 @@ def write_products(
         ),
     )
     return found
-
-
-def _first_look(
-    read: ReadFrame, frames: Sequence[Frame], map_frame: MapFrame, watch: Watcher
-) -> FirstLook:
-    look = FirstLook(map_frame)
-    watch.writing(2 * len(frames))
-    results = read_ahead(read, (frame.index for frame in frames))
-    while some := list(islice(results, FRAMES_AT_ONCE)):
-        look.add(some)
-        watch.written(len(some))
-    return look
-
-
-def _parts(
-    look: FirstLook,
-    read: ReadFrame,
-    frames: Sequence[Frame],
-    map_frame: MapFrame,
-    settings: ProductSettings,
-    watch: Watcher,
-) -> Iterator[TilePoints]:
-    """Yield what the frames hold tile by tile."""
-    tiles = list(
-        map_tiles(
-            extents=look.extents,
-            points=look.points,
-            lattice=look.raster(cell_size=settings.grid),
-            margin=max(settings.thinning, settings.reach) + settings.grid,
-            most=POINTS_OF_A_TILE,
-        )
-    )
-    needed = [[frames[number].index for number in tile.frames] for tile in tiles]
-    watch.writing(len(frames) + sum(map(len, needed)))
-    results = read_ahead(read, chain.from_iterable(needed))
-    for tile, numbers in zip(tiles, needed, strict=True):
-        here = islice(results, len(numbers))
-        yield tile_points(tile, here, thinning=settings.thinning, map_frame=map_frame)
-        watch.written(len(numbers))
 
 
 @contextmanager

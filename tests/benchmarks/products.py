@@ -5,7 +5,8 @@
 Lines of 200 frames of 64 x 32 pixels, 1.6 m apart, flown to and fro 41 m apart, and cross lines
 over them, over a seabed known by a formula. The frames are made first, in files as a run has them;
 16000 are the mission of 33 million pixels. Points are those that come in, a bottom and a surface
-point for every pixel, and time is that of all products.
+point for every pixel. "stitching" is tiling, thinning, gridding and LAZ (with the surface's derived
+points, three points written for two that come in), "everything" all products of a run.
 """
 
 from __future__ import annotations
@@ -27,11 +28,17 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
+from survey.cloud.derived_surface import derived_surface
 from survey.cloud.points import Outcome, PixelRecord, PointClass, PointCloud
 from survey.flight.pose import Frame, Pose
 from survey.optics.water import WaterColumn, petzold_water
 from survey.products.frame_file import FrameResult, frame_bytes, read_frame
+from survey.products.grids import gridded, solid_places, solid_tvu
+from survey.products.las_file import laz_file
 from survey.products.run_products import ProductSettings, write_products
+from survey.products.stitching import ReadFrame, first_look, stitched_tiles
+from survey.products.tif_file import bathymetry_tif
+from survey.progress import Unwatched
 from survey.sensor.camera import Camera
 from terrain.map_frame import MapFrame
 from terrain.raycast import SeabedGrid, build_grid
@@ -180,33 +187,90 @@ def frame_files(folder: Path | None, frames: list[Frame]) -> Iterator[Path]:
         yield place
 
 
+@contextmanager
+def timed(spent: dict[str, float]) -> Iterator[None]:
+    """Add seconds by the clock and of the processors to what was spent."""
+    wall, processor = time.perf_counter(), time.process_time()
+    yield
+    spent["seconds"] = time.perf_counter() - wall
+    spent["processor_seconds"] = time.process_time() - processor
+
+
+def stitch(run: Path, read: ReadFrame, frames: list[Frame], chosen: ProductSettings) -> int:
+    """Tile, thin, grid and write LAZ and GeoTIFF alone; return how many points were written."""
+    map_frame, watch, written = SEABED.map_frame, Unwatched(), 0
+    look = first_look(read, frames, map_frame, watch)
+    tiles = stitched_tiles(
+        look,
+        read,
+        frames,
+        map_frame,
+        grid=chosen.grid,
+        thinning=chosen.thinning,
+        reach=chosen.reach,
+        watch=watch,
+    )
+    raster = look.raster(cell_size=chosen.grid)
+    with (
+        laz_file(
+            run / "bottom.laz", map_frame, start_utc=chosen.start_utc, frames=frames
+        ) as add_bottom,
+        laz_file(
+            run / "water_surface.laz", map_frame, start_utc=chosen.start_utc, frames=frames
+        ) as add_surface,
+        bathymetry_tif(run / "bathymetry.tif", raster, map_frame) as add_cells,
+    ):
+        for part in tiles:
+            derived = derived_surface(part.bottom, frames)
+            add_bottom(part.bottom)
+            add_surface(part.surface)
+            add_surface(derived)
+            places = solid_places(part.bottom, map_frame)
+            add_cells(gridded(places, part.tile.cells, solid_tvu(part.bottom)))
+            written += len(part.bottom) + len(part.surface) + len(derived)
+    return written
+
+
 def measured(frames: list[Frame], place: Path, thinning: float) -> dict[str, Any]:
-    """Return how the products of some frames were written."""
+    """Return how the frames were stitched, and how all their products were written."""
+
+    def read(index: int) -> FrameResult:
+        return read_frame(place / f"{index:06d}.npz")
+
+    chosen, points = settings(thinning), 2 * len(frames) * ROWS * COLUMNS
+    stitching: dict[str, float] = {}
+    everything: dict[str, float] = {}
+    with tempfile.TemporaryDirectory(dir=place) as run, timed(stitching):
+        in_laz = stitch(Path(run), read, frames, chosen)
     with tempfile.TemporaryDirectory(dir=place) as run:
-        wall, spent = time.perf_counter(), time.process_time()
-        found = write_products(
-            Path(run),
-            read=lambda index: read_frame(place / f"{index:06d}.npz"),
-            frames=frames,
-            seabed=cast(Seabed, SEABED),
-            settings=settings(thinning),
-        )
-        wall, spent = time.perf_counter() - wall, time.process_time() - spent
+        with timed(everything):
+            found = write_products(
+                Path(run),
+                read=read,
+                frames=frames,
+                seabed=cast(Seabed, SEABED),
+                settings=chosen,
+            )
         written = sum(path.stat().st_size for path in Path(run).iterdir())
-    pixels = len(frames) * ROWS * COLUMNS
     kept = sum(found[f"points_{name}"] for name in ("bottom", "no_bottom_found", "surface"))
     return {
         "frames": len(frames),
-        "points_in": 2 * pixels,
+        "points_in": points,
         "points_written": kept,
-        "seconds": round(wall, 1),
-        "processor_seconds": round(spent, 1),
-        "points_per_second": round(2 * pixels / wall),
-        "points_per_processor_second": round(2 * pixels / spent),
-        "pixels_per_second": round(pixels / wall),
+        "points_in_laz": in_laz,
+        **_speeds("stitching", stitching, points),
+        **_speeds("everything", everything, points),
         "frames_gb": round(sum(p.stat().st_size for p in place.glob("*.npz")) / 1e9, 2),
         "products_gb": round(written / 1e9, 2),
         "peak_memory_gb": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e9, 2),
+    }
+
+
+def _speeds(name: str, spent: dict[str, float], points: int) -> dict[str, float]:
+    return {
+        **{f"{name}_{key}": round(value, 1) for key, value in spent.items()},
+        f"{name}_points_per_second": round(points / spent["seconds"]),
+        f"{name}_points_per_processor_second": round(points / spent["processor_seconds"]),
     }
 
 
@@ -225,7 +289,7 @@ def main() -> None:
         print(json.dumps(found, indent=1))
         return
     for name, value in found.items():
-        print(f"{name:28}{value:>16,}")
+        print(f"{name:40}{value:>16,}")
 
 
 if __name__ == "__main__":

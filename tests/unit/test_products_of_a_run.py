@@ -14,7 +14,7 @@ import rasterio
 
 from survey.cloud.points import Outcome, PointClass, PointCloud
 from survey.optics.water import WaterColumn, petzold_water
-from survey.products import run_products
+from survey.products import stitching
 from survey.products.frame_file import FrameResult
 from survey.products.ply_file import read_ply
 from survey.products.run_products import ProductSettings, write_products
@@ -99,7 +99,7 @@ def test_tiles_change_the_order_of_points_and_nothing_else(
     progress: Any = Progress()
     one = write(tmp_path / "one", small_survey, results, watch=progress)
     assert progress.done == progress.total == 2 * len(results)
-    monkeypatch.setattr(run_products, "POINTS_OF_A_TILE", 1000)
+    monkeypatch.setattr(stitching, "POINTS_OF_A_TILE", 1000)
     progress = Progress()
     many = write(tmp_path / "many", small_survey, results, watch=progress)
     assert progress.done == progress.total > 3 * len(results)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -14,13 +14,13 @@ from survey.cloud.points import BOTTOM_CLASSES, Outcome, PointCloud
 from survey.cloud.truth import FALSE_BOTTOM_ERROR
 from survey.products.cells import CellGrid
 from survey.products.coverage import SHADOW, cell_polygons, hole_cause, map_feature
-from survey.products.json_file import json_bytes
+from survey.products.feature_file import write_features
+from survey.products.lon_lat import lon_lat
 from survey.products.standards import Order
 from survey.products.standards.orders import WITHIN
 from survey.products.verdict.features import FoundCube
 from survey.products.verdict.passes import Passes
 from survey.products.verdict.tally import errors_of
-from survey.products.writing import write_whole
 from terrain.map_frame import MapFrame
 
 FloatArray = NDArray[np.float64]
@@ -66,19 +66,17 @@ class FailureCells:
         """Decide on some cells, by default all, with all points in them."""
         window = self.cells.window(cells or self.cells)
         part = self.cells.part(window)
-        cloud = cloud.select(
-            np.isin(cloud.classification, BOTTOM_CLASSES) & np.isfinite(cloud.true_elevation)
-        )
         on_map = cloud.position + self.origin
-        here = part.contains(on_map)
-        cloud, cell = cloud.select(here), part.index_of(on_map[here])
-        error, aside = errors_of(cloud)
-        depth = np.maximum(self.water_level - cloud.true_elevation, 0.0)
+        here = np.isin(cloud.classification, BOTTOM_CLASSES) & np.isfinite(cloud.true_elevation)
+        here &= part.contains(on_map)
+        cell = part.index_of(on_map[here])
+        error, aside = (of_points[here] for of_points in errors_of(cloud))
+        depth = np.maximum(self.water_level - cloud.true_elevation[here], 0.0)
 
         def counted(which: NDArray[np.bool_]) -> NDArray[np.intp]:
             return np.bincount(cell[which], minlength=part.rows * part.columns)
 
-        allowed = (1.0 - WITHIN) * counted(np.ones(len(cloud), dtype=np.bool_))
+        allowed = (1.0 - WITHIN) * counted(np.ones(len(cell), dtype=np.bool_))
         tvu = counted(np.abs(error) > self.order.tvu(depth))
         thu = counted(aside > self.order.thu(depth))
         false = counted(np.abs(error) > FALSE_BOTTOM_ERROR)
@@ -149,24 +147,22 @@ class FailureMap:
 
         Features have ``order``, ``cause`` and, if they are areas, ``area_m2``.
         """
+        write_features(path, self._features(map_frame))
+
+    def _features(self, map_frame: MapFrame) -> Iterator[dict[str, Any]]:
         wrong = self.state > MEETS
-        features: list[dict[str, Any]] = [
-            map_feature(rings, map_frame, {"order": self.title, "cause": self.cause(state)})
-            for rings, state in cell_polygons(self.state, wrong, self.passes.cells)
-        ]
-        features += [_lost(cube, self.title, map_frame) for cube in self.lost]
-        write_whole(path, json_bytes({"type": "FeatureCollection", "features": features}))
+        for rings, state in cell_polygons(self.state, wrong, self.passes.cells):
+            yield map_feature(rings, map_frame, {"order": self.title, "cause": self.cause(state)})
+        for cube in self.lost:
+            yield _lost(cube, self.title, map_frame)
 
 
 def _lost(cube: FoundCube, title: str, map_frame: MapFrame) -> dict[str, Any]:
-    from pyproj import Transformer
-
-    place = map_frame.to_map(np.array([cube.cube.east, cube.cube.north, 0.0]))
-    to_wgs84 = Transformer.from_crs(map_frame.epsg, 4326, always_xy=True)
-    lon, lat = to_wgs84.transform(place[0], place[1])
+    place = map_frame.to_map(np.array([[cube.cube.east, cube.cube.north, 0.0]]))
+    (coordinates,) = lon_lat(place, epsg=map_frame.epsg).tolist()
     cause = f"cube of {cube.cube.side:g} m not found"
     return {
         "type": "Feature",
         "properties": {"order": title, "cause": cause, "points": cube.points},
-        "geometry": {"type": "Point", "coordinates": [round(lon, 8), round(lat, 8)]},
+        "geometry": {"type": "Point", "coordinates": coordinates},
     }

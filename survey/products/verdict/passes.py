@@ -102,14 +102,27 @@ class PassTally:
 def _reached(places: FloatArray, cells: CellGrid, reach: float) -> NDArray[np.intp]:
     """Return the flat indices of the cells, each once, with a place within reach of the centre."""
     west, _, south, _ = cells.extent
-    at = (places - [west, south]) / cells.cell_size
-    steps = range(-ceil(reach / cells.cell_size + 0.5), ceil(reach / cells.cell_size + 0.5) + 1)
+    most = ceil(reach / cells.cell_size + 0.5)
+    columns = _steps((places[:, 0] - west) / cells.cell_size, cells.columns, most)
+    rows = _steps((places[:, 1] - south) / cells.cell_size, cells.rows, most)
     found = [np.empty(0, dtype=np.intp)]
-    for east in steps:
-        for north in steps:
-            cell = np.floor(at) + np.array([east, north])
-            near = np.linalg.norm(cell + 0.5 - at, axis=1) * cells.cell_size <= reach
-            near &= ((cell >= 0) & (cell < [cells.columns, cells.rows])).all(axis=1)
-            column, row = cell[near].astype(np.intp).T
-            found.append((cells.rows - 1 - row) * cells.columns + column)
+    for column, across, known_column in columns:
+        for row, along, known_row in rows:
+            near = np.sqrt(across + along) * cells.cell_size <= reach
+            near &= known_column & known_row
+            found.append((cells.rows - 1 - row[near]) * cells.columns + column[near])
     return np.unique(np.concatenate(found))
+
+
+def _steps(
+    at: FloatArray, count: int, most: int
+) -> list[tuple[NDArray[np.intp], FloatArray, NDArray[np.bool_]]]:
+    """Return cells along one axis up to so many steps away from places counted in cells.
+
+    Of each step the cells, the squared distances to their centres, and which cells there are.
+    """
+    cells = [np.floor(at) + step for step in range(-most, most + 1)]
+    return [
+        (cell.astype(np.intp), (cell + 0.5 - at) ** 2, (cell >= 0) & (cell < count))
+        for cell in cells
+    ]
