@@ -38,15 +38,18 @@ class LineCells:
 
 def line_cells(places: FloatArray, line: NDArray[np.uint16], *, cell_size: float) -> LineCells:
     """Return the cells of points (n, 3) [m] of lines (n,)."""
-    cells = np.floor(places[:, :2] / cell_size).astype(np.int64)
-    keys, group = np.unique(
-        np.column_stack([line.astype(np.int64), cells]), axis=0, return_inverse=True
-    )
+    cells = np.floor(places[:, :2].T / cell_size).astype(np.int64)
+    addresses = np.vstack([line.astype(np.int64), cells])
+    lowest = addresses.min(axis=1, initial=0)
+    extent = addresses.max(axis=1, initial=0) - lowest + 1
+    one_number = np.ravel_multi_index(addresses - lowest[:, None], extent)
+    keys, group = np.unique(one_number, return_inverse=True)
     total = np.bincount(group, places[:, 2], len(keys))
+    found = np.column_stack(np.unravel_index(keys, extent)) + lowest
     return LineCells(
         cell_size=cell_size,
-        line=keys[:, 0],
-        cell=keys[:, 1:],
+        line=found[:, 0],
+        cell=found[:, 1:],
         elevation=total / np.bincount(group, minlength=len(keys)),
     )
 
