@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -18,12 +18,14 @@ from survey.products.mesh_files import write_bathymetry_glb
 from survey.products.mesh_formats import write_bathymetry_mesh
 from survey.products.ply_file import copy_ply
 from survey.products.tif_file import read_bathymetry_tif, write_bathymetry_tif
+from survey.progress import Unwatched, Watcher
 from survey.run_folder import whole_frames
 from survey.run_identity import found_manifest
 from survey.run_lock import require_free
 from terrain.map_frame import MapFrame
 
 CLOUDS = ("bottom", "water_surface")
+WAVEFORMS = "zarr"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,11 +90,32 @@ class FinishedRun:
         return gridded(on_map, CellGrid.covering(on_map, cell_size=self.cell_size), tvu)
 
 
-Exporter = Callable[[FinishedRun, Path, bool], Iterator[Path]]
+@dataclass(frozen=True, kw_only=True)
+class How:
+    """How a run is exported.
+
+    Parameters
+    ----------
+    standard_only : bool
+        Clouds without our own columns, truth among them.
+    watch : Watcher
+        Is told of the progress where frames are flown again.
+    """
+
+    standard_only: bool = False
+    watch: Watcher = field(default_factory=Unwatched)
+
+
+Exporter = Callable[[FinishedRun, Path, How], Iterator[Path]]
 
 
 def export_run(
-    run: FinishedRun, output: Path, *, formats: Sequence[str], standard_only: bool = False
+    run: FinishedRun,
+    output: Path,
+    *,
+    formats: Sequence[str],
+    standard_only: bool = False,
+    watch: Watcher | None = None,
 ) -> Iterator[Path]:
     """Write a run in some formats into a folder, and yield every file when it is whole.
 
@@ -105,17 +128,27 @@ def export_run(
         Of `FORMATS`.
     standard_only : bool
         Clouds without our own columns, truth among them.
+    watch : Watcher, optional
+        Is told of the progress where frames are flown again.
 
     Raises
     ------
     ProductError
         When the run's files are not whole, or nothing is in them that the format can hold.
+    UserError
+        When the folder is the run's own, or the truth is asked for and refused at once.
     """
     if output.resolve() == run.folder.resolve():
         raise UserError(f"{output}: is the run folder itself. Choose another folder with -o")
+    if standard_only and WAVEFORMS in formats:
+        raise UserError(
+            f"--standard-only: {WAVEFORMS} is waveforms labelled with the truth. "
+            "Export it without this option"
+        )
+    how = How(standard_only=standard_only, watch=watch or Unwatched())
     output.mkdir(parents=True, exist_ok=True)
     for name in formats:
-        yield from FORMATS[name](run, output, standard_only)
+        yield from FORMATS[name](run, output, how)
 
 
 def parse_formats(text: str) -> list[str]:
@@ -164,34 +197,34 @@ def _metrics(folder: Path) -> dict[str, Any]:
 
 
 def _las(suffix: str) -> Exporter:
-    def write(run: FinishedRun, output: Path, standard_only: bool) -> Iterator[Path]:
+    def write(run: FinishedRun, output: Path, how: How) -> Iterator[Path]:
         for name in run.clouds:
             path = output / f"{name}{suffix}"
-            copy_las(run.folder / f"{name}.laz", path, standard_only=standard_only)
+            copy_las(run.folder / f"{name}.laz", path, standard_only=how.standard_only)
             yield path
 
     return write
 
 
-def _copc(run: FinishedRun, output: Path, standard_only: bool) -> Iterator[Path]:
+def _copc(run: FinishedRun, output: Path, how: How) -> Iterator[Path]:
     from survey.products.copc_file import write_copc
 
     for name in run.clouds:
         path = output / f"{name}.copc.laz"
-        write_copc(path, read_points(run.folder / f"{name}.laz", standard_only=standard_only))
+        write_copc(path, read_points(run.folder / f"{name}.laz", standard_only=how.standard_only))
         yield path
 
 
-def _ply(run: FinishedRun, output: Path, standard_only: bool) -> Iterator[Path]:
+def _ply(run: FinishedRun, output: Path, how: How) -> Iterator[Path]:
     for name in run.clouds:
         path = output / f"{name}.ply"
-        copy_ply(run.folder / f"{name}.ply", path, standard_only=standard_only)
+        copy_ply(run.folder / f"{name}.ply", path, standard_only=how.standard_only)
         yield path
-    yield from _mesh(".ply")(run, output, standard_only)
+    yield from _mesh(".ply")(run, output, how)
 
 
 def _mesh(suffix: str) -> Exporter:
-    def write(run: FinishedRun, output: Path, _: bool) -> Iterator[Path]:
+    def write(run: FinishedRun, output: Path, _: How) -> Iterator[Path]:
         path = output / f"bathymetry{suffix}"
         write_bathymetry_mesh(path, run.grid, run.map_frame, water_level=run.water_level)
         yield path
@@ -199,22 +232,34 @@ def _mesh(suffix: str) -> Exporter:
     return write
 
 
-def _glb(run: FinishedRun, output: Path, _: bool) -> Iterator[Path]:
+def _glb(run: FinishedRun, output: Path, _: How) -> Iterator[Path]:
     path = output / "bathymetry.glb"
     write_bathymetry_glb(path, run.grid, run.map_frame, water_level=run.water_level)
     yield path
 
 
-def _tif(run: FinishedRun, output: Path, _: bool) -> Iterator[Path]:
+def _tif(run: FinishedRun, output: Path, _: How) -> Iterator[Path]:
     path = output / "bathymetry.tif"
     write_bathymetry_tif(path, run.grid, run.map_frame)
     yield path
 
 
-def _cog(run: FinishedRun, output: Path, _: bool) -> Iterator[Path]:
+def _cog(run: FinishedRun, output: Path, _: How) -> Iterator[Path]:
     path = output / "bathymetry.cog.tif"
     write_bathymetry_cog(path, run.grid, run.map_frame)
     yield path
+
+
+def _zarr(run: FinishedRun, output: Path, how: How) -> Iterator[Path]:
+    from survey.labelled.export import write_waveforms
+    from survey.labelled.flown_run import FlownRun
+    from survey.labelled.pixels import Pixels
+
+    flown = FlownRun.open(run.folder)
+    camera = flown.scenario.camera
+    every_pixel = Pixels.every(1, (camera.rows, camera.columns))
+    path = output / "waveforms.zarr"
+    yield write_waveforms(flown, path, pixels=every_pixel, overwrite=True, watch=how.watch)
 
 
 FORMATS: dict[str, Exporter] = {
@@ -227,5 +272,6 @@ FORMATS: dict[str, Exporter] = {
     "stl": _mesh(".stl"),
     "tif": _tif,
     "cog": _cog,
+    WAVEFORMS: _zarr,
 }
-"""What ``bathyflash export --to`` knows: from run, folder and standard-only to files."""
+"""What ``bathyflash export --to`` knows: from run, folder and how to files."""

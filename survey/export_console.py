@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -12,7 +13,9 @@ def export(
     folder: Annotated[Path, typer.Argument(metavar="RUN", help="A finished run folder.")],
     to: Annotated[
         str,
-        typer.Option(metavar="LIST", help="las, laz, copc, ply, glb, obj, stl, tif, cog; commas."),
+        typer.Option(
+            metavar="LIST", help="las, laz, copc, ply, glb, obj, stl, tif, cog, zarr; commas."
+        ),
     ],
     output: Annotated[
         Path | None,
@@ -30,10 +33,18 @@ def export(
     ] = None,
 ) -> None:
     """Write a finished run in the formats of other programs."""
+    from survey.console import watching
     from survey.export import FinishedRun, export_run, parse_formats
 
     formats = parse_formats(to)
     run = FinishedRun.open(folder, cell_size=cell)
     chosen = folder / "export" if output is None else output
-    for path in export_run(run, chosen, formats=formats, standard_only=standard_only):
-        typer.echo(f"{path}  {path.stat().st_size / 1e6:.2f} MB")
+    with watching(sys.stdout, quiet=False) as watch:
+        files = export_run(run, chosen, formats=formats, standard_only=standard_only, watch=watch)
+        for path in files:
+            typer.echo(f"{path}  {_size(path) / 1e6:.2f} MB")
+
+
+def _size(path: Path) -> int:
+    """Return how many bytes a file or the files in a folder have."""
+    return path.stat().st_size if path.is_file() else sum(map(_size, path.iterdir()))

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from survey.cloud.points import PointClass, PointCloud
+from survey.cloud.points import BOTTOM_CLASSES, PointClass, PointCloud
 from survey.flight.pose import Frame
 from terrain.substrate import UNLABELLED
+
+KEPT = (
+    *("true_surface", "true_normal", "surface_elevation", "cause"),
+    *("time", "frame", "line", "row", "column"),
+)
+"""What a derived point has from its bottom point."""
 
 
 def derived_surface(bottom: PointCloud, frames: Sequence[Frame]) -> PointCloud:
@@ -25,28 +31,26 @@ def derived_surface(bottom: PointCloud, frames: Sequence[Frame]) -> PointCloud:
     frames : sequence of Frame
         Those that the points name.
     """
-    below = np.isin(bottom.classification, (PointClass.BATHYMETRIC, PointClass.SUBMERGED_OBJECT))
-    cloud = bottom.select(below)
-    index = {frame.index: number for number, frame in enumerate(frames)}
-    sensors = np.array([frame.measured.position for frame in frames]).reshape(-1, 3)
-    of_point = np.array([index[number] for number in cloud.frame.tolist()], dtype=np.intp)
-    sensor = sensors[of_point]
-    ray = cloud.uncorrected - sensor
-    fall = sensor[:, 2] - cloud.surface_elevation
+    below = np.flatnonzero(np.isin(bottom.classification, BOTTOM_CLASSES))
+    kept = {name: getattr(bottom, name).take(below, axis=0) for name in KEPT}
+    uncorrected = bottom.uncorrected.take(below, axis=0)
+    sensor = _sensors(frames, kept["frame"])
+    ray = uncorrected - sensor
+    fall = sensor[:, 2] - kept["surface_elevation"]
     entry = sensor + ray * (fall / -ray[:, 2])[:, None]
-    nothing = np.zeros(len(cloud), np.float32)
-    unknown = np.full(len(cloud), np.nan, np.float32)
-    return replace(
-        cloud,
+    nothing = np.zeros(len(below), np.float32)
+    unknown = np.full(len(below), np.nan, np.float32)
+    return PointCloud(
+        **kept,
         position=entry,
         uncorrected=entry,
-        truth=cloud.true_surface,
-        classification=np.full(len(cloud), PointClass.DERIVED_SURFACE, np.uint8),
-        true_classification=np.full(len(cloud), PointClass.WATER_SURFACE, np.uint8),
-        substrate=np.full(len(cloud), UNLABELLED, np.uint8),
-        true_elevation=cloud.true_surface[:, 2],
+        truth=kept["true_surface"],
+        classification=np.full(len(below), PointClass.DERIVED_SURFACE, np.uint8),
+        true_classification=np.full(len(below), PointClass.WATER_SURFACE, np.uint8),
+        substrate=np.full(len(below), UNLABELLED, np.uint8),
+        true_elevation=kept["true_surface"][:, 2],
         water_path=nothing,
-        depth=np.zeros(len(cloud)),
+        depth=np.zeros(len(below)),
         counts=nothing,
         snr=nothing,
         tvu=unknown,
@@ -54,3 +58,12 @@ def derived_surface(bottom: PointCloud, frames: Sequence[Frame]) -> PointCloud:
         reflectance=unknown,
         true_reflectance=unknown,
     )
+
+
+def _sensors(frames: Sequence[Frame], number: NDArray[np.uint32]) -> NDArray[np.float64]:
+    """Return where the flashes of some numbers (n,) were measured to be (n, 3) [m]."""
+    present = np.flatnonzero(np.bincount(number))
+    by_number = {frame.index: frame.measured.position for frame in frames}
+    position = np.full((number.max(initial=0) + 1, 3), np.nan)
+    position[present] = np.reshape([by_number[index] for index in present.tolist()], (-1, 3))
+    return position.take(number, axis=0)

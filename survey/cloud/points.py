@@ -140,11 +140,13 @@ class PointCloud:
     def __len__(self) -> int:
         return int(self.position.shape[0])
 
-    def select(self, which: NDArray[Any]) -> PointCloud:
-        """Return the points that a mask or an index array names, in its order."""
-        if isinstance(which, np.ndarray) and which.dtype == np.bool_:
-            which = np.flatnonzero(which)
-        return PointCloud(**{name: column[which] for name, column in self.columns().items()})
+    def select(self, which: NDArray[Any] | slice) -> PointCloud:
+        """Return the points that a mask, an index array or a slice names, in its order."""
+        columns = self.columns()
+        if isinstance(which, slice):
+            return PointCloud(**{name: column[which] for name, column in columns.items()})
+        index = np.flatnonzero(which) if which.dtype == np.bool_ else which
+        return PointCloud(**{name: column.take(index, axis=0) for name, column in columns.items()})
 
     def columns(self) -> dict[str, NDArray[Any]]:
         """Return the columns by name."""

@@ -244,5 +244,5 @@ def _signed_area(ring: FloatArray) -> float:
 def looked_at(record: PixelRecord) -> tuple[FloatArray, NDArray[np.uint8]]:
     """Return places (n, 2) [m, local] and outcomes (n,) of the pixels that look at the seabed."""
     places = record.true_position[..., :2].reshape(-1, 2)
-    known = np.isfinite(places).all(axis=1)
-    return places[known], record.outcome.ravel()[known]
+    known = np.flatnonzero(np.isfinite(places[:, 0]) & np.isfinite(places[:, 1]))
+    return places.take(known, axis=0), record.outcome.ravel()[known]

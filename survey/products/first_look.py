@@ -7,12 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import Outcome, PixelRecord, PointClass, PointCloud
+from survey.cloud.points import Outcome, PixelRecord, PointClass
 from survey.products.cells import CellGrid
 from survey.products.coverage import SurveyedHull, looked_at
 from survey.products.depth_profile import StrengthProfile
 from survey.products.frame_file import FrameResult
-from survey.products.grids import solid_places
+from survey.products.grids import SOLID_CLASSES
 from survey.products.pixels import PixelTally
 from survey.products.substrates import SubstrateTally
 from survey.products.writing import ProductError
@@ -43,20 +43,23 @@ class FirstLook:
     def add(self, results: Sequence[FrameResult]) -> None:
         """Add some frames: several at once take less time."""
         record = PixelRecord.concatenate([result.record for result in results])
-        bottom = PointCloud.concatenate([result.bottom for result in results])
+        substrate, kind, position = (
+            np.concatenate([getattr(result.bottom, name) for result in results])
+            for name in ("substrate", "classification", "position")
+        )
+        solid = position.take(np.flatnonzero(np.isin(kind, SOLID_CLASSES)), axis=0)
         self.pixels.add(record, frames=len(results))
         self.strengths.add(record)
-        self.substrates.add_pixels(record, bottom.substrate)
+        self.substrates.add_pixels(record, substrate)
         self.hull.add(looked_at(record)[0])
         self.surface_points += sum(len(result.surface) for result in results)
-        self.ground_points += int((bottom.classification == PointClass.GROUND).sum())
-        self._solid = joined(self._solid, extent(solid_places(bottom, self._map_frame)))
+        self.ground_points += int((kind == PointClass.GROUND).sum())
+        self._solid = joined(self._solid, extent(self._map_frame.to_map(solid)))
         self._extents += [self._extent_of(result) for result in results]
         self._points += [len(result.bottom) + len(result.surface) for result in results]
 
     def _extent_of(self, result: FrameResult) -> FloatArray:
-        places = result.record.true_position.reshape(-1, 3)
-        looked = extent(places[np.isfinite(places[:, 0])])
+        looked = extent(looked_at(result.record)[0])
         clouds = (extent(cloud.position) for cloud in (result.bottom, result.surface))
         return joined(looked, *clouds) + np.tile(self._map_frame.origin[:2], 2)
 
@@ -91,7 +94,8 @@ def extent(places: FloatArray) -> FloatArray:
     """Return west, south, east, north of places (n, 2 or 3)."""
     if len(places) == 0:
         return np.array(NOWHERE)
-    return np.concatenate([places[:, :2].min(axis=0), places[:, :2].max(axis=0)])
+    x, y = places[:, 0], places[:, 1]
+    return np.array([x.min(), y.min(), x.max(), y.max()])
 
 
 def joined(*extents: FloatArray) -> FloatArray:

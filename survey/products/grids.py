@@ -104,26 +104,48 @@ def error_places(
     cloud: PointCloud, map_frame: MapFrame, cells: CellGrid
 ) -> tuple[FloatArray, CellGrid, FloatArray]:
     """Return what `gridded` needs for a map of errors, which stand in the place of elevations."""
-    solid = cloud.select(np.isin(cloud.classification, SOLID_CLASSES))
-    solid = solid.select(np.isfinite(solid.true_elevation))
-    places = map_frame.to_map(solid.position)
-    places[:, 2] = solid.position[:, 2] - solid.true_elevation
-    return places, cells, solid.tvu.astype(np.float64)
+    solid = np.isin(cloud.classification, SOLID_CLASSES) & np.isfinite(cloud.true_elevation)
+    chosen = np.flatnonzero(solid)
+    position = cloud.position.take(chosen, axis=0)
+    places = map_frame.to_map(position)
+    places[:, 2] = position[:, 2] - cloud.true_elevation[chosen]
+    return places, cells, cloud.tvu[chosen].astype(np.float64)
 
 
 def gridded(on_map: FloatArray, cells: CellGrid, tvu: FloatArray) -> ElevationGrid:
     """Return places (n, 3), all inside, with their uncertainties (n,) by cells [m, map]."""
-    index = cells.index_of(on_map)
-    order = np.lexsort((on_map[:, 2], index))
-    count = np.bincount(index, minlength=cells.rows * cells.columns)
-    elevation, deviation = _cell_statistics(on_map[order, 2], count)
+    index, z = cells.index_of(on_map), on_map[:, 2]
+    order = _by_cell_and_height(index, z)
+    first = np.flatnonzero(np.diff(index[order], prepend=-1))
+    filled, count = index[order[first]], np.diff(first, append=len(order))
+    owner = np.empty_like(order)
+    owner[order] = np.repeat(np.arange(len(filled)), count)
+    median, deviation = _cell_statistics(z[order], first, count)
+
+    def spread(values: FloatArray, empty: float) -> FloatArray:
+        everywhere = np.full(cells.shape, empty)
+        everywhere.ravel()[filled] = values
+        return everywhere
+
     return ElevationGrid(
         cells=cells,
-        elevation=elevation.reshape(cells.shape),
-        density=count.reshape(cells.shape) / cells.cell_size**2,
-        deviation=deviation.reshape(cells.shape),
-        uncertainty=_root_mean_square(tvu, index, count.size).reshape(cells.shape),
+        elevation=spread(median, np.nan),
+        density=spread(count / cells.cell_size**2, 0.0),
+        deviation=spread(deviation, np.nan),
+        uncertainty=spread(_root_mean_square(tvu, owner, len(filled)), np.nan),
     )
+
+
+def _by_cell_and_height(index: NDArray[np.intp], z: FloatArray) -> NDArray[np.intp]:
+    """Return the order of `np.lexsort`, which takes three times as long.
+
+    Numpy sorts numbers of 16 bits by counting.
+    """
+    order = np.argsort(z)
+    for shift in (0, 16):
+        digits = (index >> shift).astype(np.uint16)
+        order = order[np.argsort(digits[order], kind="stable")]
+    return order
 
 
 def _root_mean_square(values: FloatArray, owner: NDArray[np.intp], size: int) -> FloatArray:
@@ -168,18 +190,17 @@ class Overview:
         return ElevationMap(cells=self._cells, elevation=elevation)
 
 
-def _cell_statistics(z: FloatArray, count: NDArray[np.intp]) -> tuple[FloatArray, FloatArray]:
+def _cell_statistics(
+    z: FloatArray, first: NDArray[np.intp], count: NDArray[np.intp]
+) -> tuple[FloatArray, FloatArray]:
     """Return median and deviation of elevations sorted by cell and, within it, by height."""
-    first = np.cumsum(count) - count
-    median, deviation = np.full((2, count.size), np.nan)
-    filled = np.flatnonzero(count)
-    low, high = (count[filled] - 1) // 2, count[filled] // 2
-    median[filled] = 0.5 * (z[first[filled] + low] + z[first[filled] + high])
+    median = 0.5 * (z[first + (count - 1) // 2] + z[first + count // 2])
     from_median = z - np.repeat(median, count)
     owner = np.repeat(np.arange(count.size), count)
     total = np.bincount(owner, from_median, count.size)
     squares = np.bincount(owner, from_median**2, count.size)
     several = count > 1
+    deviation = np.full(count.size, np.nan)
     variance = (squares[several] - total[several] ** 2 / count[several]) / (count[several] - 1)
     deviation[several] = np.sqrt(np.maximum(variance, 0.0))
     return median, deviation

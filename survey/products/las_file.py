@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,9 +12,10 @@ from zlib import crc32
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.cloud.points import PointClass, PointCloud
+from survey.cloud.points import PointCloud
 from survey.flight.pose import Frame
 from survey.products.gps_time import adjusted_gps_time
+from survey.products.las_records import STANDARD_BYTES, Views, extra_dimensions, las_records
 from survey.products.ply_file import require_finite, require_points
 from survey.products.writing import ProductError, require_read_back, whole_file
 from terrain.map_frame import MapFrame
@@ -25,44 +25,7 @@ if TYPE_CHECKING:
     from pyproj import CRS
 
 COORDINATE_STEP = 0.001
-SCAN_ANGLE_STEP_DEG = 0.006
-MAX_INTENSITY = 65535
-INTENSITY_STEPS = 10_000
-"""Of intensity for a reflectance of 1."""
-
-STANDARD_BYTES = 30  # of point format 6
 POINTS_AT_ONCE = 1_000_000
-EXTRA_STEPS_PER_METRE = 1024
-"""Extra coordinates are kept to 1/1024 m: their low bits are zero, which compresses well."""
-
-EXTRA_BYTES: tuple[tuple[str, type[np.generic], str], ...] = (
-    ("frame", np.uint32, "flash number from 0"),
-    ("pixel_row", np.uint16, "camera row from 0"),
-    ("pixel_column", np.uint16, "camera column from 0"),
-    ("depth_m", np.float32, "depth, positive down, m"),
-    ("snr", np.float32, "echo over noise deviation"),
-    ("counts", np.float32, "photo-electrons of the echo"),
-    *((f"uncorrected_{axis}", np.float64, "without refraction, m") for axis in "xyz"),
-    *((f"true_{axis}", np.float64, "true place of the pixel, m") for axis in "xyz"),
-    ("true_elevation", np.float64, "true z at measured x, y, m"),
-    *((f"true_surface_{axis}", np.float64, "true crossing of the water, m") for axis in "xyz"),
-    *((f"true_normal_{axis}", np.float32, "true normal of the water") for axis in "xyz"),
-    ("true_water_path", np.float32, "true one-way path in water, m"),
-    ("total_thu", np.float32, "horizontal uncertainty 95 %, m"),
-    ("total_tvu", np.float32, "vertical uncertainty 95 %, m"),
-    ("surface_z", np.float64, "water where the ray enters, m"),
-    ("reflectance", np.float32, "of a diffuse target as bright"),
-    ("true_reflectance", np.float32, "of what is truly there"),
-    ("true_class", np.uint8, "class of what is truly there"),
-    ("substrate", np.uint8, "true bottom, see metrics.json"),
-    ("cause", np.uint8, "of error: docs/uncertainty.md"),
-)
-RETURNS = {
-    PointClass.WATER_SURFACE: (1, 2),
-    PointClass.BATHYMETRIC: (2, 2),
-    PointClass.SUBMERGED_OBJECT: (2, 2),
-}
-"""Return number and number of returns in water; (1, 1) for the other classes."""
 
 
 def write_laz(
@@ -135,33 +98,14 @@ def laz_file(
                 nonlocal count, checksum
                 if len(cloud) == 0:
                     return
-                require_finite(path, cloud)
-                points = _records(header, cloud, map_frame, start_utc, views)
+                require_finite(path, cloud, ("position", "uncorrected", "true_surface"))
+                points = las_records(header, cloud, map_frame, start_utc=start_utc, views=views)
                 file.write_points(points)
                 count, checksum = count + len(cloud), _checksum(points, checksum)
 
             yield add
             require_points(path, count)
         require_read_back(path, "points", _count_and_checksum(partial) == (count, checksum))
-
-
-def _records(
-    header: laspy.LasHeader,
-    cloud: PointCloud,
-    map_frame: MapFrame,
-    start_utc: datetime,
-    views: Views,
-) -> laspy.ScaleAwarePointRecord:
-    import laspy
-
-    points = laspy.ScaleAwarePointRecord.zeros(len(cloud), header=header)
-    on_map = map_frame.to_map(cloud.position)
-    points.x, points.y, points.z = on_map[:, 0], on_map[:, 1], on_map[:, 2]
-    _fill_standard_fields(points, cloud, views)
-    points.gps_time = adjusted_gps_time(start_utc, cloud.time)
-    for name, values in _extra_columns(cloud, map_frame).items():
-        points[name] = values
-    return points
 
 
 def _count_and_checksum(path: Path) -> tuple[int, int]:
@@ -207,13 +151,13 @@ def read_laz(path: Path, map_frame: MapFrame, *, start_utc: datetime) -> PointCl
         classification=np.array(las.classification, dtype=np.uint8),
         true_classification=np.array(las.true_class),
         substrate=np.array(las.substrate),
-        true_elevation=np.array(las.true_elevation),
+        true_elevation=np.array(las.true_elevation, dtype=np.float64),
         true_surface=place("true_surface_"),
         true_normal=np.stack([np.array(las[f"true_normal_{axis}"]) for axis in "xyz"], axis=1),
         water_path=np.array(las.true_water_path),
         tvu=np.array(las.total_tvu),
         thu=np.array(las.total_thu),
-        surface_elevation=np.array(las.surface_z),
+        surface_elevation=np.array(las.surface_z, dtype=np.float64),
         reflectance=np.array(las.reflectance),
         true_reflectance=np.array(las.true_reflectance),
         cause=np.array(las.cause),
@@ -251,93 +195,7 @@ def _header(map_frame: MapFrame, start_utc: datetime) -> laspy.LasHeader:
     header.global_encoding.gps_time_type = GpsTimeType.STANDARD
     header.global_encoding.wkt = True
     header.vlrs.append(WktCoordinateSystemVlr(map_frame.crs.to_wkt("WKT1_GDAL")))
-    header.add_extra_dims([laspy.ExtraBytesParams(*columns) for columns in EXTRA_BYTES])
+    header.add_extra_dims(extra_dimensions(header))
+    for about in header.vlrs.get("ExtraBytesVlr")[0].extra_bytes_structs:
+        about.options &= ~(about.MIN_BIT_MASK | about.MAX_BIT_MASK)
     return header
-
-
-def _fill_standard_fields(las: Any, cloud: PointCloud, views: Views) -> None:
-    las.synthetic = np.ones(len(cloud), dtype=np.uint8)
-    las.classification = cloud.classification
-    steps = np.nan_to_num(np.rint(cloud.reflectance * INTENSITY_STEPS))
-    las.intensity = np.clip(steps, 0, MAX_INTENSITY).astype(np.uint16)
-    las.point_source_id = cloud.line + np.uint16(1)
-    las.scan_angle = np.rint(views.scan_angle_deg(cloud) / SCAN_ANGLE_STEP_DEG).astype(np.int16)
-    numbers, totals = np.ones((2, len(cloud)), dtype=np.uint8)
-    for point_class, (number, total) in RETURNS.items():
-        numbers[cloud.classification == point_class] = number
-        totals[cloud.classification == point_class] = total
-    las.return_number, las.number_of_returns = numbers, totals
-
-
-@dataclass(frozen=True, kw_only=True)
-class Views:
-    """Where each flash was measured to be, by its number.
-
-    Parameters
-    ----------
-    position : array (flashes, 3)
-        [m, local].
-    heading : array (flashes,)
-        [rad].
-    """
-
-    position: NDArray[np.float64]
-    heading: NDArray[np.float64]
-
-    @classmethod
-    def of(cls, frames: Sequence[Frame]) -> Views:
-        """Return the views of some frames; nan for numbers between that no frame has."""
-        number = np.array([frame.index for frame in frames], dtype=np.intp)
-        position = np.full((number.max() + 1, 3), np.nan)
-        position[number] = [frame.measured.position for frame in frames]
-        heading = np.full(len(position), np.nan)
-        heading[number] = [frame.measured.heading for frame in frames]
-        return cls(position=position, heading=heading)
-
-    def scan_angle_deg(self, cloud: PointCloud) -> NDArray[np.float64]:
-        """Return the angle off nadir across the track, positive to the right (n,) [deg].
-
-        Taken to the uncorrected point, hence the direction in air.
-        """
-        heading = self.heading[cloud.frame]
-        ray = cloud.uncorrected - self.position[cloud.frame]
-        right = ray[:, 0] * np.cos(heading) - ray[:, 1] * np.sin(heading)
-        return np.asarray(np.degrees(np.arctan2(right, -ray[:, 2])))
-
-
-def _extra_columns(cloud: PointCloud, map_frame: MapFrame) -> dict[str, NDArray[Any]]:
-    places = {
-        "uncorrected": map_frame.to_map(cloud.uncorrected),
-        "true": map_frame.to_map(cloud.truth),
-        "true_surface": map_frame.to_map(cloud.true_surface),
-    }
-    columns: dict[str, NDArray[Any]] = {
-        f"{prefix}_{axis}": _compressible(place[:, index])
-        for prefix, place in places.items()
-        for index, axis in enumerate("xyz")
-    }
-    columns |= {
-        f"true_normal_{axis}": cloud.true_normal[:, index] for index, axis in enumerate("xyz")
-    }
-    return columns | {
-        "true_water_path": cloud.water_path,
-        "total_thu": cloud.thu,
-        "total_tvu": cloud.tvu,
-        "surface_z": _compressible(cloud.surface_elevation),
-        "reflectance": cloud.reflectance,
-        "true_reflectance": cloud.true_reflectance,
-        "frame": cloud.frame,
-        "pixel_row": cloud.row,
-        "pixel_column": cloud.column,
-        "depth_m": cloud.depth,
-        "snr": cloud.snr,
-        "counts": cloud.counts,
-        "true_elevation": _compressible(cloud.true_elevation),
-        "true_class": cloud.true_classification,
-        "substrate": cloud.substrate,
-        "cause": cloud.cause,
-    }
-
-
-def _compressible(metres: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.asarray(np.rint(metres * EXTRA_STEPS_PER_METRE) / EXTRA_STEPS_PER_METRE)

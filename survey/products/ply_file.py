@@ -94,12 +94,15 @@ def require_points(path: Path, count: int) -> None:
         )
 
 
-def require_finite(path: Path, cloud: PointCloud) -> None:
-    """Raise `ProductError` if a position is not finite."""
-    bad = np.flatnonzero(~np.isfinite(cloud.position).all(axis=1))
-    if bad.size:
+def require_finite(path: Path, cloud: PointCloud, names: Sequence[str] = ("position",)) -> None:
+    """Raise `ProductError` if places in some columns of a cloud are not finite."""
+    for name in names:
+        places = getattr(cloud, name)
+        if np.isfinite(places).all():
+            continue
+        bad = np.flatnonzero(~np.isfinite(places).all(axis=1))[0]
         raise ProductError(
-            f"{path.name}: point {bad[0]}: position {cloud.position[bad[0]].tolist()} is not "
+            f"{path.name}: point {bad}: {name.replace('_', ' ')} {places[bad].tolist()} is not "
             "finite. Leave such points out of the cloud"
         )
 

@@ -302,6 +302,18 @@ def test_a_frame_that_is_not_the_run_s_own_is_refused(run: FlownRun, tmp_path: P
     assert not list(tmp_path.glob("*.zarr"))
 
 
+def test_an_export_writes_the_same_waveforms(run: FlownRun, written: Path, tmp_path: Path) -> None:
+    words = ["export", str(run.folder), "--to", "zarr", "-o", str(tmp_path / "out")]
+    exported = CliRunner().invoke(app, words)
+    assert exported.exit_code == 0, exported.output
+    assert contents(tmp_path / "out/waveforms.zarr") == contents(written)
+    blind = CliRunner().invoke(app, [*words, "--standard-only"])
+    assert (blind.exit_code, "zarr is waveforms labelled with the truth" in blind.stderr) == (
+        2,
+        True,
+    )
+
+
 def typed(*words: object) -> Result:
     return CliRunner().invoke(app, ["waveforms", *map(str, words)])
 

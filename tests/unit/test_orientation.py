@@ -22,7 +22,7 @@ from survey.flight.pose import Frame, Pose
 from survey.flight.trajectory import fly_lines, footprint
 from survey.preparation import prepare
 from survey.products.grids import grid_elevation
-from survey.products.las_file import Views
+from survey.products.las_records import Views
 from survey.scenario import components
 from survey.scenario.scenario import Scenario
 from survey.sensor.camera import Camera

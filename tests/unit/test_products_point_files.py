@@ -145,6 +145,33 @@ def test_extra_bytes_are_described(small_survey: Any, tmp_path: Path) -> None:
     assert all(4 < len(dimension.description) <= 32 for dimension in extra.values())
 
 
+def test_extra_places_are_steps_of_which_readers_make_metres(
+    small_survey: Any, tmp_path: Path
+) -> None:
+    import laspy
+
+    las = laspy.read(str(write(tmp_path / "bottom.laz", small_survey)))
+    bottom, to_map = small_survey.bottom, small_survey.map_frame.to_map
+    scaled = {each.name for each in las.point_format.extra_dimensions if each.is_scaled}
+    wanted = {"uncorrected": bottom.uncorrected, "true_surface": bottom.true_surface}
+    assert scaled == {f"{name}_{axis}" for name in wanted for axis in "xy"}
+    for name, places in (wanted | {"true": bottom.truth}).items():
+        steps = np.rint(to_map(places) * 1024)
+        for axis, column in zip("xyz", steps.T, strict=True):
+            assert np.array_equal(np.asarray(las[f"{name}_{axis}"]) * 1024, column)
+    assert las.true_elevation.dtype == np.float32
+    assert np.array_equal(las.true_elevation, np.rint(bottom.true_elevation * 1024) / 1024)
+
+
+def test_no_range_is_told_that_is_not_the_columns(small_survey: Any, tmp_path: Path) -> None:
+    """Laspy would write that of the first point."""
+    import laspy
+
+    header = laspy.read(str(write(tmp_path / "bottom.laz", small_survey))).header
+    about = header.vlrs.get("ExtraBytesVlr")[0].extra_bytes_structs
+    assert all(each.min is None and each.max is None for each in about)
+
+
 @pytest.mark.parametrize("suffix", [".ply", ".laz", ".las"])
 def test_same_bytes_twice(small_survey: Any, tmp_path: Path, suffix: str) -> None:
     first = write(tmp_path / f"a{suffix}", small_survey).read_bytes()
@@ -176,6 +203,15 @@ def test_a_position_that_is_not_finite_is_refused(
     bad = replace(small_survey, bottom=replace(small_survey.bottom, position=position))
     with pytest.raises(ProductError, match=r"point 7: position .* is not finite"):
         write(tmp_path / f"bottom{suffix}", bad)
+
+
+@pytest.mark.parametrize("name", ["uncorrected", "true_surface"])
+def test_a_place_that_has_no_steps_is_refused(small_survey: Any, tmp_path: Path, name: str) -> None:
+    places = getattr(small_survey.bottom, name).copy()
+    places[7, 1] = np.nan
+    bad = replace(small_survey, bottom=replace(small_survey.bottom, **{name: places}))
+    with pytest.raises(ProductError, match=rf"point 7: {name.replace('_', ' ')} .* is not finite"):
+        write(tmp_path / "bottom.laz", bad)
 
 
 def test_unknown_truth_is_kept(small_survey: Any, tmp_path: Path) -> None:
