@@ -30,7 +30,8 @@ FloatArray = NDArray[np.float64]
 
 DEPTH_STEP = 1.0
 FLASH_RATE = 8.0
-FRAMES = {"coastal": 56, "clear": 56}
+SECOND_LOOK_RATE = 0.1
+FRAMES = 56
 
 
 def frames_alone_and_helped(
@@ -40,8 +41,11 @@ def frames_alone_and_helped(
 
     ``more`` are other keys of the scenario.
     """
-    rate: dict[str, Any] = {"flight.flash_rate_hz": FLASH_RATE}
-    scenario = scenario_of(water, day=day, frames=frames, bottomless=bottomless, **(rate | more))
+    changes: dict[str, Any] = {
+        "flight.flash_rate_hz": FLASH_RATE,
+        "processing.second_look_rate": SECOND_LOOK_RATE,
+    }
+    scenario = scenario_of(water, day=day, frames=frames, bottomless=bottomless, **(changes | more))
     mission = prepare(scenario)
     alone = {index: result for index, result, _ in fly_frames(mission, mission.frames)}
     helped = mission.products.helped(alone.__getitem__, mission.frames)
@@ -94,6 +98,7 @@ def gain(water: str, *, day: bool, frames: int, **more: Any) -> dict[str, Any]:
         "day": day,
         "bottomless_pixels": sum(result.record.outcome.size for result in empty[0]),
         "candidates": sum(len(r.candidates) for r in empty[0] if r.candidates is not None),
+        "echoes_alone": _echoes(empty[0]),
         "false_alone": _false(empty[0]),
         "false_added": sum(result.helped for result in empty[1]),
         "added": errors_of(added(*bed)),
@@ -101,11 +106,15 @@ def gain(water: str, *, day: bool, frames: int, **more: Any) -> dict[str, Any]:
     }
 
 
-def _false(results: Sequence[FrameResult]) -> int:
+def _echoes(results: Sequence[FrameResult]) -> int:
     """Return how many pixels had an echo, those sorted out as noise included."""
     return sum(
         int(np.isin(r.record.outcome, (Outcome.FALSE_BOTTOM, Outcome.NOISE)).sum()) for r in results
     )
+
+
+def _false(results: Sequence[FrameResult]) -> int:
+    return sum(int((r.record.outcome == Outcome.FALSE_BOTTOM).sum()) for r in results)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -113,9 +122,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("-o", "--output", type=Path, default=Path("docs"))
     given = parser.parse_args(arguments)
-    cases = [
-        gain(water, day=day, frames=FRAMES[water]) for water, day in product(BEDS, (True, False))
-    ]
+    cases = [gain(water, day=day, frames=FRAMES) for water, day in product(BEDS, (True, False))]
     (given.output / "overlap_gain.json").write_text(json.dumps(cases) + "\n")
 
 

@@ -21,6 +21,8 @@ from survey.products.frame_file import FrameResult
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
+TOLERANCE = 0.5
+"""Over a candidate's TVU: wider ones add more that is off by over 1 m than that is right."""
 MOST_FRAMES = 24
 WITNESSES_AT_HAND = 64
 
@@ -79,7 +81,7 @@ class HelpedFrames:
         """Tell with which candidates of a frame enough others agree."""
         spacing = self._spacing[place]
         reach = spacing + weak.thu.astype(np.float64)
-        tolerance = np.sqrt(2.0) * weak.tvu.astype(np.float64)
+        tolerance = TOLERANCE * weak.tvu.astype(np.float64)
         others = self._views.around(place, depth=self._rule.depth_searched, most=MOST_FRAMES)
         if others.size == 0:
             return np.zeros(len(weak), np.bool_)
