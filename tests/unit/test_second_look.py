@@ -23,7 +23,7 @@ def weak(tables: dict[str, Any], tmp_path: Path) -> Scenario:
     tables["flight"] |= {"frames_per_line": 6, "speed_m_s": 20.0, "flash_rate_hz": 20.0}
     tables["camera"] = {"rows": 8, "columns": 8}
     tables["transport"] = {"walks_per_pixel": 32}
-    tables["seabed"] = {"kind": "plane", "depth_m": 20.0}
+    tables["seabed"] = {"kind": "plane", "depth_m": 27.0}
     tables["processing"] = {"second_look_rate": 0.1, "thinning_m": 0.0}
     return Scenario.from_tables(tables, name="weak.toml", folder=tmp_path)
 
