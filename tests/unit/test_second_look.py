@@ -41,7 +41,9 @@ def bottoms(folder: Path) -> dict[tuple[int, ...], float]:
     """Return the elevation of every bottom point by frame, row and column."""
     records, _ = read_records(folder / "bottom.ply")
     solid = records[np.isin(records["classification"], BOTTOM_CLASSES)]
-    pixel = zip(*(solid[name].tolist() for name in ("frame", "row", "column")), strict=True)
+    pixel = zip(
+        *(solid[name].tolist() for name in ("frame", "pixel_row", "pixel_column")), strict=True
+    )
     return dict(zip(pixel, solid["z"].tolist(), strict=True))
 
 
