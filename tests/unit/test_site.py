@@ -42,6 +42,7 @@ PURE_NUMBERS = {
     "damping",
     "depolarisation",
     "false_alarm_rate",
+    "second_look_rate",
     "fill_factor",
     "forward_asymmetry",
     "forward_share",
