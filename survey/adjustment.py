@@ -201,12 +201,19 @@ def _adjusted(
     seabed: Seabed,
     water: WaterColumn,
 ) -> FrameResult:
-    """Return a frame whose points are placed anew."""
-    bottom, surface = (
-        _moved(cloud, found, frames, water) for cloud in (result.bottom, result.surface)
+    """Return a frame whose points, and candidates for points, are placed anew."""
+
+    def bottoms(cloud: PointCloud) -> PointCloud:
+        here = _moved(cloud, found, frames, water)
+        return replace(here, true_elevation=seabed.elevation_at(*here.position[:, :2].T))
+
+    weak = result.candidates
+    return replace(
+        result,
+        bottom=bottoms(result.bottom),
+        surface=_moved(result.surface, found, frames, water),
+        candidates=None if weak is None else bottoms(weak),
     )
-    elevation = seabed.elevation_at(bottom.position[:, 0], bottom.position[:, 1])
-    return replace(result, bottom=replace(bottom, true_elevation=elevation), surface=surface)
 
 
 def _moved(

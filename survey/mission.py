@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,16 +13,18 @@ from typing import Any
 from survey.cloud.error_causes import with_causes
 from survey.cloud.frame_points import bottom_points, find_water, surface_points
 from survey.cloud.georeference import pixel_rays
+from survey.cloud.points import PointCloud
 from survey.cloud.ranging import blind_at, first_echo
 from survey.cloud.record import pixel_record
-from survey.cloud.truth import true_targets
+from survey.cloud.second_look import second_echo, weak_points
+from survey.cloud.truth import TrueTargets, true_targets
 from survey.cloud.uncertainty import Surroundings
 from survey.crew.hire import local_crew
 from survey.crew.outcome import Crew, Failed, Work
 from survey.crew.patience import patiently
 from survey.errors import FrameError, UserError
 from survey.far_work import FarWork
-from survey.flight.pose import Frame
+from survey.flight.pose import Frame, Pose
 from survey.preparation import Mission, prepare
 from survey.products.frame_file import FrameResult, frame_bytes
 from survey.products.observation import Observation
@@ -74,6 +77,7 @@ def observe(mission: Mission, frame: Frame) -> Observation:
         surface_time=line.surface_time,
     )
     bottom = search.echo(readings.counts)
+    weak = second_echo(search, counts=readings.counts, bottom=bottom, rate=mission.second_look_rate)
 
     targets = true_targets(
         seabed=mission.seabed,
@@ -84,10 +88,10 @@ def observe(mission: Mission, frame: Frame) -> Observation:
         time=frame.time,
     )
     on_surface = surface_points(line=line, first=first, frame=frame, targets=targets)
-    on_bottom = bottom_points(
+    placed = partial(
+        bottom_points,
         line=line,
         first=first,
-        bottom=bottom,
         frame=frame,
         rays=rays,
         targets=targets,
@@ -104,17 +108,14 @@ def observe(mission: Mission, frame: Frame) -> Observation:
         first=first,
         bottom=bottom,
     )
-    on_surface, on_bottom = (
-        with_causes(
-            mission.calibration.applied(mission.budget.applied(cloud, around), frame=frame),
-            budget=mission.budget,
-            around=around,
-            true_pose=frame.pose,
-            true_level=surface.level,
-            targets=targets,
-        )
-        for cloud in (on_surface, on_bottom)
+    judged = partial(
+        _judged, mission, true_pose=frame.pose, true_level=surface.level, targets=targets
     )
+    on_surface, on_bottom = (judged(cloud, around) for cloud in (on_surface, placed(bottom=bottom)))
+    candidates = None
+    if weak is not None:
+        doubtful = weak_points(placed(bottom=weak), weak)
+        candidates = judged(doubtful, replace(around, bottom=weak), bed=on_bottom)
     record = pixel_record(
         waveforms=waveforms,
         saturated=blind_at(blind=readings.blind, time=targets.time, noise=noise),
@@ -133,7 +134,33 @@ def observe(mission: Mission, frame: Frame) -> Observation:
         first=first,
         bottom=bottom,
         targets=targets,
-        result=FrameResult(bottom=on_bottom, surface=on_surface, record=record, raw=raw),
+        result=FrameResult(
+            bottom=on_bottom, surface=on_surface, record=record, raw=raw, candidates=candidates
+        ),
+    )
+
+
+def _judged(
+    mission: Mission,
+    cloud: PointCloud,
+    around: Surroundings,
+    *,
+    true_pose: Pose,
+    true_level: float,
+    targets: TrueTargets,
+    bed: PointCloud | None = None,
+) -> PointCloud:
+    """Return points with their uncertainties, reflectance and true causes of error."""
+    told = mission.calibration.applied(
+        mission.budget.applied(cloud, around, bed=bed), frame=around.frame
+    )
+    return with_causes(
+        told,
+        budget=mission.budget,
+        around=around,
+        true_pose=true_pose,
+        true_level=true_level,
+        targets=targets,
     )
 
 

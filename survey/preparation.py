@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.bottom_search import SEARCHES, BottomSearch
+from survey.cloud.coincidence import Coincidence
+from survey.cloud.georeference import depth_of
 from survey.cloud.noise import NoiseModel
 from survey.cloud.posed_noise import PosedNoise
 from survey.cloud.ranging import surface_walk
@@ -56,7 +58,8 @@ class Mission:
 
     `engine` and `posed_noise` are those of mean level; `level_error` is how far the expected water
     level lies above the true one [m]; `scattering` returns the errors that scattered light is
-    expected to make, worked out when first asked for.
+    expected to make, worked out when first asked for; `second_look_rate` is None where the scenario
+    wants no second look for weak echoes, or where no two frames see the same place.
     """
 
     frames: Sequence[Frame]
@@ -74,6 +77,7 @@ class Mission:
     scattering: Callable[[], Scattering]
     products: ProductSettings
     raw_step: int | None
+    second_look_rate: float | None
 
     @property
     def noise(self) -> NoiseModel:
@@ -114,7 +118,7 @@ def prepare(scenario: Scenario) -> Mission:
     seabed = components.seabed(scenario)
     seabed.require_coverage(footprints(camera, frames, surface.lowest_level))
     require_air(frames, highest=seabed.grid.z_high)
-    noise = posed_noise(scenario, frames[0], surface)
+    noise, settings = posed_noise(scenario, frames[0], surface), product_settings(scenario)
     return Mission(
         frames=frames,
         camera=camera,
@@ -140,8 +144,9 @@ def prepare(scenario: Scenario) -> Mission:
         ),
         scattering=_once(partial(_scattering, scenario, noise, surface)),
         calibration=_calibration(scenario, frames[0], surface),
-        products=product_settings(scenario),
+        products=settings,
         raw_step=RAW_STEPS[scenario.processing.keep_waveforms],
+        second_look_rate=_second_look_rate(frames, settings),
     )
 
 
@@ -162,7 +167,31 @@ def product_settings(scenario: Scenario) -> ProductSettings:
         camera=components.camera(scenario),
         order=scenario.mission.order,
         cubes=cubes(scenario),
+        second_look=_second_look(scenario),
     )
+
+
+def _second_look(scenario: Scenario) -> Coincidence | None:
+    """Return how frames believe each other's weak echoes; None where each stands for itself."""
+    given, receiver = scenario.processing, components.receiver(scenario)
+    if given.ranging != "matched" or given.second_look_rate == 0.0:
+        return None
+    return Coincidence(
+        candidate_rate=given.second_look_rate,
+        false_alarm_rate=given.false_alarm_rate,
+        depth_searched=depth_of(
+            time=receiver.bins * receiver.bin_width,
+            group_index=components.water(scenario).group_index,
+        ),
+    )
+
+
+def _second_look_rate(frames: Sequence[Frame], settings: ProductSettings) -> float | None:
+    """Return the rate of the second look, where it can be of use to another frame."""
+    rule = settings.second_look
+    if rule is None or not settings.views(frames).any_meet(depth=rule.depth_searched):
+        return None
+    return rule.candidate_rate
 
 
 def posed_noise(scenario: Scenario, frame: Frame, sea: SeaSurface) -> PosedNoise:

@@ -140,12 +140,7 @@ class MatchedSearch:
         mean = uniform_filter(own, size=(NEIGHBOURS, NEIGHBOURS, 1))
         rare = np.minimum(own, np.float32(RARE) * mean)
         common = uniform_filter(rare**2, size=(NEIGHBOURS, NEIGHBOURS, 1))
-        false_alarm = false_alarm_of_a_bin(
-            rate=noise.false_alarm_rate / JUDGEMENTS,
-            bins=noise.bottomless.shape[-1],
-            sigma=FILTER_WIDTH * noise.pulse_sigma / noise.bin_width,
-        )
-        gain_variance = float(noise.bins.gain_variance.max())
+        chance = _chance(noise, taps, noise.false_alarm_rate)
         return cls(
             noise=noise,
             taps=taps,
@@ -156,25 +151,31 @@ class MatchedSearch:
             variance=_filtered(noise.bins.variance, taps**2, step),
             error=common * np.float32(1.0 + 1.0 / noise.model_flashes),
             doubt=np.float32(DOUBTFUL) * _over_the_step(own),
-            tail=_tail(tuple(taps.tolist()), false_alarm, gain_variance),
-            deviate=MONTE_CARLO_TAIL * float(norm.isf(false_alarm)),
+            tail=chance.tail,
+            deviate=chance.deviate,
         )
 
-    def echo(self, counts: Readout) -> Echo:
+    def at_rate(self, false_alarm_rate: float) -> MatchedSearch:
+        """Return the search with another false-alarm rate of a pixel and flash."""
+        chance = _chance(self.noise, self.taps, false_alarm_rate)
+        return replace(self, tail=chance.tail, deviate=chance.deviate)
+
+    def echo(self, counts: Readout, asked: BoolArray | None = None) -> Echo:
         """Return the bottom's echo in readings (rows, columns, bins).
 
         One whose likeliest time lies before the first gate searched is the flank of the surface's,
-        or of a bottom's that is merged with it, and none.
+        or of a bottom's that is merged with it, and none. ``asked`` are the pixels (rows, columns)
+        in which it is looked for: all of them unless told.
         """
         seen = _filtered(counts, self.taps)
         alone, *pools = self._judgements
         excess, clipped = np.empty_like(seen), np.empty_like(seen)
         scale, _ = self._fitted(seen)
         excesses(seen, self.expected, scale, alone.threshold, self.step, excess, clipped)
-        everywhere = np.ones(self.late.shape, np.bool_)
-        peak = self._last_peaks(excess, alone.threshold, excess, self.doubt, everywhere)
+        wanted = np.ones(self.late.shape, np.bool_) if asked is None else asked
+        peak = self._last_peaks(excess, alone.threshold, excess, self.doubt, wanted)
         for pool in pools:
-            unseen = peak == NONE
+            unseen = wanted & (peak == NONE)
             together = self._pooled(clipped, 1, pool.reach, unseen)
             weak = self._last_peaks(together, pool.threshold, excess, self._own_least, unseen)
             peak = np.where(unseen, weak, peak)
@@ -318,6 +319,28 @@ def false_alarm_of_a_bin(*, rate: float, bins: int, sigma: float) -> float:
     alone = rate / bins
     together = float(norm.isf(alone)) / (2.0 * sqrt(pi) * max(sigma, 1e-9))
     return alone / min(1.0, together)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Chance:
+    """How far chance reaches at a false-alarm rate; see `MatchedSearch`."""
+
+    tail: TailTable
+    deviate: float
+
+
+def _chance(noise: NoiseModel, taps: Singles, rate: float) -> _Chance:
+    """Return what each judgement's share of a pixel's false-alarm rate asks for."""
+    false_alarm = false_alarm_of_a_bin(
+        rate=rate / JUDGEMENTS,
+        bins=noise.bottomless.shape[-1],
+        sigma=FILTER_WIDTH * noise.pulse_sigma / noise.bin_width,
+    )
+    gain_variance = float(noise.bins.gain_variance.max())
+    return _Chance(
+        tail=_tail(tuple(taps.tolist()), false_alarm, gain_variance),
+        deviate=MONTE_CARLO_TAIL * float(norm.isf(false_alarm)),
+    )
 
 
 @lru_cache(maxsize=16)

@@ -96,12 +96,19 @@ class Budget:
     pose: PoseUncertainty
     level_error: float
 
-    def applied(self, cloud: PointCloud, around: Surroundings) -> PointCloud:
-        """Return the points of a frame with their uncertainties."""
+    def applied(
+        self, cloud: PointCloud, around: Surroundings, *, bed: PointCloud | None = None
+    ) -> PointCloud:
+        """Return the points of a frame with their uncertainties.
+
+        ``bed`` are the points of the frame that show slope and relief: those of the cloud itself
+        unless told.
+        """
         if len(cloud) == 0:
             return cloud
         effects = self.effects(cloud, around)
-        slope, roughness = _bed(cloud, around.rays.shape[:2])
+        shown, pixel = cloud if bed is None else bed, (cloud.row, cloud.column)
+        slope, roughness = (part[pixel] for part in _bed(shown, around.rays.shape[:2]))
         effects[Cause.RELIEF] = _hidden_relief(roughness, effects)
         vectors = np.concatenate(list(effects.values()))
         vertical = vectors[..., 2] - np.sum(vectors[..., :2] * slope, axis=-1)
@@ -177,13 +184,13 @@ class Budget:
 
 
 def _bed(cloud: PointCloud, shape: tuple[int, ...]) -> tuple[FloatArray, FloatArray]:
-    """Return slope (n, 2) [1] and roughness (n,) [m] that neighbouring points of a frame show."""
+    """Return slope (rows, columns, 2) [1] and roughness [m] that points of a frame show."""
     pixel = cloud.row, cloud.column
     places, used = np.full((*shape, 3), np.nan), np.zeros(shape, np.bool_)
     places[pixel] = cloud.position
     used[pixel] = cloud.classification != PointClass.NO_BOTTOM_FOUND
     planes = fitted_planes(places=places, used=used, width=NEIGHBOURHOOD)
-    return np.nan_to_num(planes.slope[pixel]), planes.roughness[pixel]
+    return np.nan_to_num(planes.slope), planes.roughness
 
 
 def _hidden_relief(roughness: FloatArray, effects: Effects) -> FloatArray:

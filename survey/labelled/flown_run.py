@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from survey.cloud.points import PixelRecord
+from survey.cloud.points import PixelRecord, PointCloud
 from survey.cloud.raw import RawReadings
 from survey.errors import OtherRunError, UserError
 from survey.products.frame_file import FrameResult, read_frame, read_raw
@@ -100,12 +101,21 @@ class FlownRun:
 
 
 def _differences(kept: FrameResult, again: FrameResult) -> Iterator[str]:
-    for cloud in ("bottom", "surface"):
-        old, new = getattr(kept, cloud).columns(), getattr(again, cloud).columns()
-        yield from (f"{cloud}_{name}" for name in old if not _equal(old[name], new[name]))
+    for cloud in ("bottom", "surface", "candidates"):
+        old, new = _cloud_columns(kept, cloud), _cloud_columns(again, cloud)
+        yield from (
+            f"{cloud}_{name}"
+            for name in old | new
+            if name not in old or name not in new or not _equal(old[name], new[name])
+        )
     for field in fields(PixelRecord):
         if not _equal(getattr(kept.record, field.name), getattr(again.record, field.name)):
             yield f"pixel_{field.name}"
+
+
+def _cloud_columns(result: FrameResult, name: str) -> dict[str, NDArray[Any]]:
+    cloud: PointCloud | None = getattr(result, name)
+    return {} if cloud is None else cloud.columns()
 
 
 def _raw_differences(kept: RawReadings | None, again: RawReadings | None) -> list[str]:

@@ -34,7 +34,7 @@ class FirstLook:
     def __init__(self, map_frame: MapFrame) -> None:
         self.pixels, self.substrates, self.hull = PixelTally(), SubstrateTally(), SurveyedHull()
         self.strengths = StrengthProfile()
-        self.surface_points = self.ground_points = 0
+        self.surface_points = self.ground_points = self.helped = 0
         self._map_frame = map_frame
         self._extents: list[FloatArray] = []
         self._points: list[int] = []
@@ -54,6 +54,7 @@ class FirstLook:
         self.hull.add(looked_at(record)[0])
         self.surface_points += sum(len(result.surface) for result in results)
         self.ground_points += int((kind == PointClass.GROUND).sum())
+        self.helped += sum(result.helped for result in results)
         self._solid = joined(self._solid, extent(self._map_frame.to_map(solid)))
         self._extents += [self._extent_of(result) for result in results]
         self._points += [len(result.bottom) + len(result.surface) for result in results]

@@ -30,26 +30,35 @@ class FrameResult:
         Truth and outcome of every pixel.
     raw : RawReadings, optional
         What the detector put out, where the scenario keeps it; `read_raw` reads it back.
+    candidates : PointCloud, optional
+        Weak echoes of pixels without a bottom, which other frames may make bottoms.
+    helped : int
+        How many of the bottom points other frames have made so; not in the file.
     """
 
     bottom: PointCloud
     surface: PointCloud
     record: PixelRecord
     raw: RawReadings | None = None
+    candidates: PointCloud | None = None
+    helped: int = 0
 
 
 def frame_bytes(result: FrameResult) -> bytes:
     """Return the content of a frame's file: the same bytes for the same frame.
 
-    A zip of ``bottom.npy``, ``surface.npy``, ``pixel.npy`` and, where it was kept, ``raw.npy``.
-    Each holds one record whose fields are whole columns, and `numpy.load` reads it. Only the last
-    is deflated: of the others that would take a third off the size and double the reading time.
+    A zip of ``bottom.npy``, ``surface.npy``, ``pixel.npy`` and, where there are any,
+    ``candidates.npy`` and ``raw.npy``. Each holds one record whose fields are whole columns, and
+    `numpy.load` reads it. Only the last is deflated: of the others that would take a third off the
+    size and double the reading time.
     """
     parts: dict[str, Mapping[str, Any]] = {
         "bottom": result.bottom.columns(),
         "surface": result.surface.columns(),
         "pixel": {field.name: getattr(result.record, field.name) for field in fields(PixelRecord)},
     }
+    if result.candidates is not None:
+        parts["candidates"] = result.candidates.columns()
     if result.raw is not None:
         parts["raw"] = {
             field.name: getattr(result.raw, field.name) for field in fields(RawReadings)
@@ -82,10 +91,12 @@ def read_frame(path: Path) -> FrameResult:
     """
     try:
         with zipfile.ZipFile(path) as archive:
+            weak = "candidates.npy" in archive.namelist()
             return FrameResult(
                 bottom=PointCloud(**_columns(archive, "bottom")),
                 surface=PointCloud(**_columns(archive, "surface")),
                 record=PixelRecord(**_columns(archive, "pixel")),
+                candidates=PointCloud(**_columns(archive, "candidates")) if weak else None,
             )
     except (zipfile.BadZipFile, zlib.error, EOFError, KeyError, TypeError, ValueError) as fault:
         raise ValueError(f"{path}: not a whole frame ({fault}). Delete it and run again") from None

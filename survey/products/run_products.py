@@ -12,9 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from survey.cloud.coincidence import Coincidence
 from survey.cloud.derived_surface import derived_surface
 from survey.cloud.overlaps import OverlapTally
 from survey.cloud.points import PointCloud
+from survey.cloud.shared_views import SharedViews
 from survey.flight.pose import Frame
 from survey.optics.water import WaterColumn
 from survey.products.accuracy import Accuracy
@@ -22,6 +24,7 @@ from survey.products.coverage import CoverageTally, write_coverage_geojson
 from survey.products.depth_profile import DepthProfile
 from survey.products.first_look import FirstLook
 from survey.products.grids import Overview, error_places, gridded, solid_places, solid_tvu
+from survey.products.helped_frames import HelpedFrames
 from survey.products.json_file import write_json
 from survey.products.las_file import laz_file
 from survey.products.lines_file import write_lines_geojson
@@ -85,6 +88,8 @@ class ProductSettings:
         How the lines were brought together: "none", "boresight" or "offsets".
     camera : Camera
         Tells what was in view and hidden.
+    second_look : Coincidence, optional
+        How frames believe each other's weak echoes; without it each stands for itself.
     """
 
     title: str
@@ -102,6 +107,29 @@ class ProductSettings:
     order: str | None
     cubes: Sequence[Cube]
     strip_adjustment: str = "none"
+    second_look: Coincidence | None = None
+
+    def views(self, frames: Sequence[Frame]) -> SharedViews:
+        """Return what frames see under water."""
+        return SharedViews.of(
+            frames,
+            self.camera,
+            level=self.water_level,
+            refractive_index=self.water.refractive_index,
+        )
+
+    def helped(self, read: ReadFrame, frames: Sequence[Frame]) -> ReadFrame:
+        """Return how frames are read whose weak echoes other frames have judged."""
+        if self.second_look is None:
+            return read
+        return HelpedFrames(
+            read,
+            frames,
+            views=self.views(frames),
+            rule=self.second_look,
+            pixel_tangent=self.camera.pixel_tangent,
+            level=self.water_level,
+        )
 
     @property
     def reach(self) -> float:
@@ -157,6 +185,7 @@ def write_products(
         When no bottom and no land was found; the text says why.
     """
     map_frame, watch = seabed.map_frame, watch or Unwatched()
+    read = settings.helped(read, frames)
     look = first_look(read, frames, map_frame, watch)
     look.require_bottom()
     area = look.hull.ring() if settings.survey_area is None else settings.survey_area
@@ -217,6 +246,7 @@ def write_products(
     found = accuracy.metrics(
         pixels=look.pixels, elevation_at=seabed.elevation_at, water=settings.water
     )
+    found["found_with_other_frames"] = look.helped
     found["strip_adjustment"] = settings.strip_adjustment
     found["frames_set_aside"] = [
         {"frame": index, "reason": reason} for index, reason in sorted((set_aside or {}).items())

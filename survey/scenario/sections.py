@@ -209,7 +209,9 @@ class Processing(Section):
     """From counts to points and grids; without `echo_gate_ns` an echo is one pulse width long.
 
     `ranging` is how the bottom is looked for: by a matched filter, weak echoes together with their
-    neighbours, or by the threshold of [Lisenko2017] in each pixel alone.
+    neighbours, or by the threshold of [Lisenko2017] in each pixel alone. With the filter, pixels
+    without a bottom may be looked at a second time, at `second_look_rate`: what is found then
+    becomes a bottom where enough frames that overlap agree.
 
     Rays bend at the `mean_level` of the water or at `local_waves`, planes through neighbouring
     first echoes. `correct_scattering` takes from the ranges what scattered light is expected to do
@@ -224,6 +226,8 @@ class Processing(Section):
     alone."""
     false_alarm_rate: Annotated[float, Field(gt=0.0, lt=1.0)] = 1e-3
     """Probability of a false bottom in a pixel and flash, over the whole gate."""
+    second_look_rate: Annotated[float, Field(ge=0.0, le=0.3)] = 0.0
+    """The same of candidates, which become bottoms where other frames agree; 0 is no such look."""
     echo_gate_ns: Positive | None = None
     """Length of the gate in which an echo's counts are summed; one pulse width unless told."""
     expects_layers: bool = True

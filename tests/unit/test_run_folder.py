@@ -49,6 +49,15 @@ def test_a_frame_reads_back_as_it_was_written(tmp_path: Path, result: FrameResul
     assert np.array_equal(again.record.outcome, result.record.outcome)
 
 
+def test_a_frame_keeps_its_candidates(tmp_path: Path, result: FrameResult) -> None:
+    weak = replace(result, candidates=result.bottom.select(np.arange(3)))
+    (tmp_path / "000003.npz").write_bytes(written := frame_bytes(weak))
+    again = read_frame(tmp_path / "000003.npz")
+    assert again.candidates is not None
+    assert np.array_equal(again.candidates.position, result.bottom.position[:3])
+    assert written == frame_bytes(again)
+
+
 def test_a_frame_over_land_has_no_surface(tmp_path: Path, result: FrameResult) -> None:
     dry = replace(result, surface=result.surface.select(slice(0, 0)))
     (tmp_path / "000003.npz").write_bytes(frame_bytes(dry))

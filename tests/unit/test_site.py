@@ -63,6 +63,7 @@ PURE_NUMBERS = {
     "relief_spectral_slope",
     "roughness_spectral_slope",
     "scattering_fraction",
+    "second_look_rate",
     "secondary_emission",
     "sidelap",
     "size_slope",

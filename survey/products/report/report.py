@@ -16,6 +16,7 @@ from survey.products.report.maps import depth_map, error_histogram, error_map, o
 from survey.products.report.page import Figure, figures, page
 from survey.products.report.tables import (
     frames_set_aside,
+    helped_sentence,
     key_figures,
     missed_sentence,
     overlaps,
@@ -90,7 +91,7 @@ def write_report(folder: Path, found: Findings) -> None:
         *figures(first),
         "<h2>Key figures</h2>",
         key_figures(metrics),
-        f"<p>{reach_sentence(metrics)} {missed_sentence(metrics)}</p>",
+        f"<p>{reach_sentence(metrics)} {missed_sentence(metrics)} {helped_sentence(metrics)}</p>",
         *found.verdict,
         *([found.failures.html()] if found.failures else []),
         "<h2>Points, errors and detection</h2>",

@@ -74,6 +74,17 @@ def missed_sentence(metrics: Mapping[str, Any]) -> str:
     return f"Of {metrics['pixels_wet']} wet pixels {sum(missed.values())} missed it: {causes}."
 
 
+def helped_sentence(metrics: Mapping[str, Any]) -> str:
+    """Return how many pixels owe their bottom to other frames; nothing where none does."""
+    helped = metrics.get("found_with_other_frames", 0)
+    if not helped:
+        return ""
+    return (
+        f"{helped} pixels found it with the help of other frames that look there: alone their "
+        "echo was too weak."
+    )
+
+
 def frames_set_aside(frames: Sequence[Mapping[str, Any]]) -> list[str]:
     """Return which frames are missing because they could not be flown, if there are any."""
     if not frames:
