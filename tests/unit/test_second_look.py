@@ -58,7 +58,7 @@ def test_frames_that_overlap_add_bottoms_and_change_none(weak: Scenario, tmp_pat
     assert added == metrics["points_bottom"] - before["points_bottom"] > 0
     assert bottoms(alone).items() <= bottoms(helped).items()
     assert sum(metrics["missed"].values()) < sum(before["missed"].values())
-    assert f"{added} of the pixels" in (helped / "report.html").read_text()
+    assert f"{added} pixels found it with the help" in (helped / "report.html").read_text()
 
     frame = read_frame(helped / "frames/000003.npz")
     assert frame.candidates is not None
