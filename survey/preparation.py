@@ -189,7 +189,7 @@ def _second_look(scenario: Scenario) -> Coincidence | None:
 def _second_look_rate(frames: Sequence[Frame], settings: ProductSettings) -> float | None:
     """Return the rate of the second look, where it can be of use to another frame."""
     rule = settings.second_look
-    if rule is None or not settings.views(frames).any_meet(depth=rule.depth_searched):
+    if rule is None or not settings.views(frames, deepest=rule.depth_searched).any_meet():
         return None
     return rule.candidate_rate
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from survey.cloud.points import BOTTOM_CLASSES, PointClass, PointCloud
-from survey.flight.pose import Frame
+from survey.flight.pose import Frame, measured_positions
 from terrain.substrate import UNLABELLED
 
 KEPT = (
@@ -34,7 +33,7 @@ def derived_surface(bottom: PointCloud, frames: Sequence[Frame]) -> PointCloud:
     below = np.flatnonzero(np.isin(bottom.classification, BOTTOM_CLASSES))
     kept = {name: getattr(bottom, name).take(below, axis=0) for name in KEPT}
     uncorrected = bottom.uncorrected.take(below, axis=0)
-    sensor = _sensors(frames, kept["frame"])
+    sensor = measured_positions(frames).take(kept["frame"], axis=0)
     ray = uncorrected - sensor
     fall = sensor[:, 2] - kept["surface_elevation"]
     entry = sensor + ray * (fall / -ray[:, 2])[:, None]
@@ -58,12 +57,3 @@ def derived_surface(bottom: PointCloud, frames: Sequence[Frame]) -> PointCloud:
         reflectance=unknown,
         true_reflectance=unknown,
     )
-
-
-def _sensors(frames: Sequence[Frame], number: NDArray[np.uint32]) -> NDArray[np.float64]:
-    """Return where the flashes of some numbers (n,) were measured to be (n, 3) [m]."""
-    present = np.flatnonzero(np.bincount(number))
-    by_number = {frame.index: frame.measured.position for frame in frames}
-    position = np.full((number.max(initial=0) + 1, 3), np.nan)
-    position[present] = np.reshape([by_number[index] for index in present.tolist()], (-1, 3))
-    return position.take(number, axis=0)

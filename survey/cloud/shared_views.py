@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.georeference import bend_at_surface
+from survey.flight.polygon import cross
 from survey.flight.pose import Frame
 from survey.flight.trajectory import FieldOfView
 
@@ -27,10 +29,13 @@ class SharedViews:
         Where the corners' rays enter the water, around the view [m, local].
     spread : array (frames, 4, 2)
         How far these rays go sideways for each metre of depth [1].
+    deepest : float
+        Down to where views may meet [m].
     """
 
     entry: FloatArray
     spread: FloatArray
+    deepest: float
 
     @classmethod
     def of(
@@ -40,6 +45,7 @@ class SharedViews:
         *,
         level: float,
         refractive_index: float,
+        deepest: float,
     ) -> SharedViews:
         """Return the views of some frames.
 
@@ -51,6 +57,8 @@ class SharedViews:
             Elevation of the water [m, local].
         refractive_index : float
             Of the water [1].
+        deepest : float
+            Down to where views may meet [m].
 
         Examples
         --------
@@ -59,8 +67,9 @@ class SharedViews:
         >>> camera = Camera(rows=32, columns=64, pixel_tangent=0.008, long_side="along")
         >>> frames = [Frame(index=i, line=0, time=i, pose=Pose(roll=0.0, pitch=0.0, heading=0.0,
         ...     position=np.array([0.0, 60.0 * i, 200.0]))) for i in range(3)]
-        >>> views = SharedViews.of(frames, camera, level=0.0, refractive_index=1.33)
-        >>> views.around(0, depth=10.0, most=8).tolist()  # 102 m long: the next, not the third
+        >>> views = SharedViews.of(frames, camera, level=0.0, refractive_index=1.33,
+        ...     deepest=10.0)
+        >>> views.around(0, most=8).tolist()  # 102 m long: the next, not the third
         [1]
         >>> places = np.array([[0.0, 50.0], [0.0, 0.0]])
         >>> views.see(np.array([1]), places, depth=np.zeros(2), reach=np.ones(2)).tolist()
@@ -78,14 +87,16 @@ class SharedViews:
             refractive_index=refractive_index,
         )
         ahead = path.direction
-        return cls(entry=path.entry[..., :2], spread=ahead[..., :2] / -ahead[..., 2:])
+        return cls(
+            entry=path.entry[..., :2], spread=ahead[..., :2] / -ahead[..., 2:], deepest=deepest
+        )
 
-    def around(self, which: int, *, depth: float, most: int) -> Indices:
-        """Return the frames whose views may meet that of one down to a depth [m], in their order.
+    def around(self, which: int, *, most: int) -> Indices:
+        """Return the frames whose views may meet that of one, in their order.
 
         Of more than ``most`` those whose centres are nearest.
         """
-        low, high = self._boxes(depth)
+        low, high = self._boxes
         meets = ((low <= high[which]) & (high >= low[which])).all(axis=1)
         meets[which] = False
         found = np.flatnonzero(meets)
@@ -95,10 +106,10 @@ class SharedViews:
             found = np.sort(found[np.argsort(apart, kind="stable")[:most]])
         return found
 
-    def any_meet(self, *, depth: float) -> bool:
-        """Tell whether any two views may meet down to a depth [m]."""
+    def any_meet(self) -> bool:
+        """Tell whether any two views may meet."""
         everyone = range(len(self.entry))
-        return any(self.around(which, depth=depth, most=1).size for which in everyone)
+        return any(self.around(which, most=1).size for which in everyone)
 
     def see(
         self, which: Indices, places: FloatArray, *, depth: FloatArray, reach: FloatArray
@@ -116,16 +127,13 @@ class SharedViews:
         ring = self.entry[which, None] + self.spread[which, None] * depth[:, None, None]
         edge = np.roll(ring, -1, axis=2) - ring
         apart = places[:, None] - ring
-        aside = _cross(edge, apart) / np.linalg.norm(edge, axis=-1)
-        turn = np.sign(_cross(edge, np.roll(edge, -1, axis=2)))
+        aside = cross(edge, apart) / np.linalg.norm(edge, axis=-1)
+        turn = np.sign(cross(edge, np.roll(edge, -1, axis=2)))
         return np.asarray((aside * turn >= -reach[:, None]).all(axis=-1))
 
-    def _boxes(self, depth: float) -> tuple[FloatArray, FloatArray]:
-        """Return the least and the greatest corners (frames, 2) of the views down to a depth."""
-        deep = self.entry + self.spread * depth
+    @cached_property
+    def _boxes(self) -> tuple[FloatArray, FloatArray]:
+        """Return the least and the greatest corners (frames, 2) of the views."""
+        deep = self.entry + self.spread * self.deepest
         both = np.concatenate([self.entry, deep], axis=1)
         return both.min(axis=1), both.max(axis=1)
-
-
-def _cross(one: FloatArray, other: FloatArray) -> FloatArray:
-    return np.asarray(one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0])

@@ -13,6 +13,17 @@ SMALLEST_AREA = 1.0
 MOST_AT_ONCE = 4_000_000
 
 
+def cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return how far vectors b (..., 2) lie to the left of a, times the length of a.
+
+    Examples
+    --------
+    >>> cross(np.array([2.0, 0.0]), np.array([5.0, 3.0])).tolist()
+    6.0
+    """
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
+
+
 def polygon_faults(corners: FloatArray) -> list[str]:
     """Return what is wrong with a polygon, one line a fault; nothing where it is sound.
 

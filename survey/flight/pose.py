@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -110,3 +111,20 @@ class Frame:
     def measured(self) -> Pose:
         """The pose that georeferencing knows."""
         return self.pose if self.navigation is None else self.navigation
+
+
+def measured_positions(frames: Sequence[Frame]) -> FloatArray:
+    """Return where flashes were measured to be, by their number (numbers, 3) [m].
+
+    nan for numbers that no frame has.
+
+    Examples
+    --------
+    >>> pose = Pose(position=np.array([1.0, 2.0, 200.0]), roll=0.0, pitch=0.0, heading=0.0)
+    >>> measured_positions([Frame(index=1, line=0, time=0.0, pose=pose)]).tolist()
+    [[nan, nan, nan], [1.0, 2.0, 200.0]]
+    """
+    number = [frame.index for frame in frames]
+    position = np.full((max(number, default=-1) + 1, 3), np.nan)
+    position[number] = np.reshape([frame.measured.position for frame in frames], (-1, 3))
+    return position

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from survey.flight.polygon import cross
 from survey.flight.pose import Frame
 from survey.planning.views import Views
 
@@ -113,8 +114,8 @@ def side_by_side(frames: Sequence[Frame], seen: Views) -> Neighbours:
     one, other = np.concatenate([found, found[:, ::-1]]).T
     apart = place[other] - place[one]
     along = _along(apart, directions[one])
-    lateral = _cross(directions[one], apart)
-    parallel = np.abs(_cross(directions[one], directions[other])) < PARALLEL_SINE
+    lateral = cross(directions[one], apart)
+    parallel = np.abs(cross(directions[one], directions[other])) < PARALLEL_SINE
     near = np.abs(along) <= 0.5 * np.maximum(spacing[one], spacing[other]) * (1.0 + ROUNDING)
     chosen = parallel & near & (np.abs(lateral) > LEAST_LATERAL_SHARE * width)
     return _nearest_on_each_side(one[chosen], other[chosen], lateral[chosen], directions)
@@ -217,11 +218,6 @@ def _spacing(frames: Sequence[Frame]) -> FloatArray:
     line = np.array([frame.line for frame in frames])
     steps = np.linalg.norm(np.diff(place, axis=0), axis=1) * (line[1:] == line[:-1])
     return np.asarray(np.maximum(np.append(steps, 0.0), np.insert(steps, 0, 0.0)))
-
-
-def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return how far b lies to the left of a."""
-    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
 
 def _along(apart: FloatArray, direction: FloatArray) -> FloatArray:

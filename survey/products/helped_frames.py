@@ -82,7 +82,7 @@ class HelpedFrames:
         spacing = self._spacing[place]
         reach = spacing + weak.thu.astype(np.float64)
         tolerance = TOLERANCE * weak.tvu.astype(np.float64)
-        others = self._views.around(place, depth=self._rule.depth_searched, most=MOST_FRAMES)
+        others = self._views.around(place, most=MOST_FRAMES)
         if others.size == 0:
             return np.zeros(len(weak), np.bool_)
         looks = self._views.see(others, weak.position[:, :2], depth=weak.depth, reach=reach)

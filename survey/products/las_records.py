@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.cloud.points import PointClass, PointCloud
-from survey.flight.pose import Frame
+from survey.flight.pose import Frame, measured_positions
 from survey.products.gps_time import adjusted_gps_time
 from terrain.map_frame import MapFrame
 
@@ -99,11 +99,9 @@ class Views:
     @classmethod
     def of(cls, frames: Sequence[Frame]) -> Views:
         """Return the views of some frames; nan for numbers between that no frame has."""
-        number = np.array([frame.index for frame in frames], dtype=np.intp)
-        position = np.full((number.max() + 1, 3), np.nan)
-        position[number] = [frame.measured.position for frame in frames]
+        position = measured_positions(frames)
         heading = np.full(len(position), np.nan)
-        heading[number] = [frame.measured.heading for frame in frames]
+        heading[[frame.index for frame in frames]] = [frame.measured.heading for frame in frames]
         return cls(position=position, right=np.column_stack([np.cos(heading), -np.sin(heading)]))
 
     def scan_angle_deg(self, cloud: PointCloud) -> FloatArray:

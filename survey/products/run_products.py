@@ -109,13 +109,14 @@ class ProductSettings:
     strip_adjustment: str = "none"
     second_look: Coincidence | None = None
 
-    def views(self, frames: Sequence[Frame]) -> SharedViews:
-        """Return what frames see under water."""
+    def views(self, frames: Sequence[Frame], *, deepest: float) -> SharedViews:
+        """Return what frames see under water down to a depth [m]."""
         return SharedViews.of(
             frames,
             self.camera,
             level=self.water_level,
             refractive_index=self.water.refractive_index,
+            deepest=deepest,
         )
 
     def helped(self, read: ReadFrame, frames: Sequence[Frame]) -> ReadFrame:
@@ -125,7 +126,7 @@ class ProductSettings:
         return HelpedFrames(
             read,
             frames,
-            views=self.views(frames),
+            views=self.views(frames, deepest=self.second_look.depth_searched),
             rule=self.second_look,
             pixel_tangent=self.camera.pixel_tangent,
             level=self.water_level,

@@ -15,7 +15,7 @@ from survey.cloud.points import BOTTOM_CLASSES, Outcome, PointClass, PointCloud
 from survey.cloud.shared_views import SharedViews
 from survey.flight.pose import Frame, Pose
 from survey.products.frame_file import FrameResult
-from survey.products.helped_frames import MOST_FRAMES, HelpedFrames
+from survey.products.helped_frames import MOST_FRAMES, TOLERANCE, HelpedFrames
 from survey.sensor.camera import Camera
 
 FloatArray = NDArray[np.float64]
@@ -87,7 +87,7 @@ def judged(frames: list[Frame], results: list[FrameResult], rule: Coincidence) -
     helped = HelpedFrames(
         by_number.__getitem__,
         frames,
-        views=SharedViews.of(frames, CAMERA, level=0.0, refractive_index=INDEX),
+        views=SharedViews.of(frames, CAMERA, level=0.0, refractive_index=INDEX, deepest=SEARCHED),
         rule=rule,
         pixel_tangent=CAMERA.pixel_tangent,
         level=0.0,
@@ -147,7 +147,7 @@ def test_false_candidates_agree_as_rarely_as_the_rule_says(
     trials = draws * 5 * 4 * 12
     reach = 1.6 + THU
     chance = rule.chance(
-        pixels=np.array([np.pi * (reach / 1.6) ** 2]), tolerance=np.array([2**0.5 * TVU])
+        pixels=np.array([np.pi * (reach / 1.6) ** 2]), tolerance=np.array([TOLERANCE * TVU])
     )
     needed = rule.needed(looks=np.array([4]), chance=chance)
     expected = float(rate * binom.sf(needed - 1, 4, chance)[0])
@@ -171,8 +171,8 @@ def test_a_frame_is_the_same_whichever_is_read_first(small_survey: Any) -> None:
     ]
     forth = judged(frames, results, RULE)
     back = judged(frames[::-1], results[::-1], RULE)[::-1]
-    views = SharedViews.of(frames, CAMERA, level=0.0, refractive_index=INDEX)
-    assert len(views.around(20, depth=SEARCHED, most=MOST_FRAMES)) == MOST_FRAMES
+    views = SharedViews.of(frames, CAMERA, level=0.0, refractive_index=INDEX, deepest=SEARCHED)
+    assert len(views.around(20, most=MOST_FRAMES)) == MOST_FRAMES
     assert forth[20].helped > 0
     for one, other in zip(forth, back, strict=True):
         assert np.array_equal(one.bottom.position, other.bottom.position)
