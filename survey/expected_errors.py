@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from math import inf, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.constants import speed_of_light
 
 from survey.cloud.bottom_search import BottomSearch
 from survey.cloud.georeference import WaterPath, bend_at_surface, pixel_rays, place_in_water
@@ -24,7 +26,10 @@ from terrain.seabed import Seabed
 FloatArray = NDArray[np.float64]
 
 FIRST_FRAME = (1 << 31) + 64
-SHALLOWEST, DEPTHS, DEEPENING = 2.0, 6, 1.7
+SHALLOWEST, DEEPENING = 2.0, 1.7
+TRIES, LEAST_DEEPENING = 9, 1.1
+SECOND_BOUNCE = 1.5
+"""Depths of the bottom after which light is left out: it touched the bottom twice."""
 REFLECTANCE = 0.15  # assumed: sand
 CELL = 1.0  # [m]
 BEYOND = 25.0  # how far the bottom goes on beyond the view [m]
@@ -68,11 +73,18 @@ class LevelBottoms:
         return Scattering.fitted(list(self._bottoms()))
 
     def _bottoms(self) -> Iterator[LevelBottom]:
-        for number in range(DEPTHS):
-            bottom = self._bottom(SHALLOWEST * DEEPENING**number, FIRST_FRAME + number)
+        """Yield bottoms of growing depth; from the first that is too deep on, by halving."""
+        depth, deepening, too_deep = SHALLOWEST / DEEPENING, DEEPENING, inf
+        for number in range(TRIES):
+            bottom = self._bottom(depth * deepening, FIRST_FRAME + number)
             if bottom is None:
+                too_deep = depth * deepening
+            else:
+                depth = bottom.depth
+                yield bottom
+            deepening = min(DEEPENING, sqrt(too_deep / depth))
+            if deepening < LEAST_DEEPENING:
                 return
-            yield bottom
 
     def _bottom(self, depth: float, number: int) -> LevelBottom | None:
         even = self._even_bed(depth)
@@ -85,7 +97,7 @@ class LevelBottoms:
             level=self.level,
             refractive_index=engine.water.refractive_index,
         )
-        late, measured = self._measured(engine, light, path)
+        late, measured = self._measured(engine, light, path, depth)
         found = np.isfinite(measured) & np.isfinite(late)
         if found.mean() < ENOUGH or found.sum() < FEWEST:
             return None
@@ -104,6 +116,7 @@ class LevelBottoms:
             depth=depth,
             tangent=off_nadir(rays)[found],
             error=measured[found] - (self.level - depth),
+            edge=self.camera.edge_tangents()[found] * (pose.position[2] - self.level),
             along=(tangents @ axis)[found],
             origin=(origin - centre[..., :2] @ axis)[found],
             surface_late=late[found],
@@ -126,14 +139,21 @@ class LevelBottoms:
         return float(max(self.camera.half_tangents) * height + BEYOND)
 
     def _measured(
-        self, engine: Engine, light: Waveforms, path: WaterPath
+        self, engine: Engine, light: Waveforms, path: WaterPath, depth: float
     ) -> tuple[FloatArray, FloatArray]:
         """Return lateness of the surface [s] and elevation of the bottom [m] by the mean readings.
 
-        The bottom's is told from water at its true level.
+        The bottom's is told from water at its true level, and from light that touched it once.
         """
         noise = self.noise
-        counts = noise.detector.mean(light.total + noise.steady_light)
+        speed = speed_of_light / engine.water.group_index
+        end = path.air_time + 2.0 * SECOND_BOUNCE * depth / -path.direction[..., 2] / speed
+        bins = noise.bin_start + noise.bin_width * np.arange(light.total.shape[-1])
+        counts = np.where(
+            bins < end[..., None],
+            noise.detector.mean(light.total + noise.steady_light),
+            noise.bottomless,
+        )
         first = first_echo(counts=counts, noise=noise)
         search = self.search.over(
             noise=noise, variance=light.variance[:2].sum(axis=0), surface_time=path.air_time

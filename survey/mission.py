@@ -94,6 +94,7 @@ def observe(mission: Mission, frame: Frame) -> Observation:
         first=first,
         frame=frame,
         rays=rays,
+        camera=mission.camera,
         targets=targets,
         seabed=mission.seabed,
         group_index=engine.water.group_index,

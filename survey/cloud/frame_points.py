@@ -25,6 +25,7 @@ from survey.flight.pose import Frame
 from terrain.substrate import UNLABELLED
 
 if TYPE_CHECKING:
+    from survey.sensor.camera import Camera
     from terrain.seabed import Seabed
 
 FloatArray = NDArray[np.float64]
@@ -192,6 +193,7 @@ def bottom_points(
     bottom: Echo,
     frame: Frame,
     rays: FloatArray,
+    camera: Camera,
     targets: TrueTargets,
     seabed: Seabed,
     group_index: float,
@@ -204,7 +206,8 @@ def bottom_points(
     """
     found = bottom.found
     refracted = place_in_water(path=line.path, time=bottom.time, group_index=group_index)
-    corrected = scattering.corrected(refracted, rays=rays, level=line.level)
+    edge = camera.edge_tangents() * (frame.measured.position[2] - line.level)
+    corrected = scattering.corrected(refracted, rays=rays, edge=edge, level=line.level)
     straight = place_in_air(position=frame.measured.position, rays=rays, time=bottom.time)
     on_land, in_water = line.land[..., None], found[..., None]
     position = np.where(on_land, line.first, np.where(in_water, corrected, line.path.entry))

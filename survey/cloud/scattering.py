@@ -14,6 +14,13 @@ FloatArray = NDArray[np.float64]
 
 ANGLES = 16
 OUTLIERS = 4.0  # deviations, from quartiles: merged with the surface, or false
+NARROWEST = 1e-3  # rim, also where a point is told above the water [m]
+LEAST_NEARNESS = 0.1  # of the outermost pixels: of less, nothing is told of the rim
+RIM_PER_DEPTH = 0.25
+"""Width of the rim, in depths, whose pixels miss light scattered from beyond the view.
+
+Fitted to flashes in coastal water: what they miss falls to 1 / e within 0.25 of 6 and of 17 m.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,6 +35,8 @@ class LevelBottom:
         Of the angles off nadir in air [1].
     error : array (n,)
         Measured less true elevation [m].
+    edge : array (n, 2)
+        Distances from where pixels look on the water to the edges of the view [m].
     along : array (n,)
         Tangents along one axis of the camera [1].
     origin : array (n,)
@@ -40,6 +49,7 @@ class LevelBottom:
     depth: float
     tangent: FloatArray
     error: FloatArray
+    edge: FloatArray
     along: FloatArray
     origin: FloatArray
     surface_late: FloatArray
@@ -56,12 +66,15 @@ class Scattering:
     bias, bias_slant : array
         Measured less true elevation at nadir, and what the squared tangent of the angle off nadir
         in air adds [m].
+    bias_rim : array
+        What is added at an edge of the view, beyond which no light is; it falls off inwards as
+        `nearness` tells [m].
     shift : array
         How much nearer to nadir light was reflected than the pixel's centre looks, over the
         tangent [m].
     residual : array
-        Standard deviation of a pixel's elevation about bias and slant [m]: the Monte Carlo error
-        of a flash, and what the rim of the light does.
+        Standard deviation of a pixel's elevation about these three [m]: mainly the Monte Carlo
+        error of a flash.
     surface_tangent : array (angles,)
         Tangents of angles off nadir, growing [1].
     surface_late : array (angles,)
@@ -71,13 +84,16 @@ class Scattering:
     Examples
     --------
     >>> none = Scattering.none()
-    >>> none.elevation_error(depth=np.array([3.0]), tangent=np.array([0.2])).tolist()
+    >>> none.elevation_error(
+    ...     depth=np.array([3.0]), tangent=np.array([0.2]), edge=np.array([[1.0, 9.0]])
+    ... ).tolist()
     [0.0]
     """
 
     depth: FloatArray
     bias: FloatArray
     bias_slant: FloatArray
+    bias_rim: FloatArray
     shift: FloatArray
     residual: FloatArray
     surface_tangent: FloatArray
@@ -105,16 +121,32 @@ class Scattering:
         """Return a column at measured depths: straight between the table's, constant beyond."""
         return np.asarray(np.interp(depth, self.depth, getattr(self, name)))
 
-    def elevation_error(self, *, depth: FloatArray, tangent: FloatArray) -> FloatArray:
-        """Return measured less true elevation that is to be expected [m]."""
-        return self.at("bias", depth) + self.at("bias_slant", depth) * tangent**2
+    def elevation_error(
+        self, *, depth: FloatArray, tangent: FloatArray, edge: FloatArray
+    ) -> FloatArray:
+        """Return measured less true elevation that is to be expected [m].
+
+        Parameters
+        ----------
+        depth : array (...)
+            Measured [m].
+        tangent : array (...)
+            Of the angles off nadir in air [1].
+        edge : array (..., 2)
+            Distances from where pixels look on the water to the edges of the view [m].
+        """
+        slant = self.at("bias_slant", depth) * tangent**2
+        rim = self.at("bias_rim", depth) * nearness(edge, depth=depth)
+        return self.at("bias", depth) + slant + rim
 
     def on_time(self, first: Echo, rays: FloatArray) -> Echo:
         """Return first echoes as early as the water is, along rays (rows, columns, 3) in air."""
         late = np.interp(off_nadir(rays), self.surface_tangent, self.surface_late)
         return replace(first, time=first.time - late)
 
-    def corrected(self, position: FloatArray, *, rays: FloatArray, level: float) -> FloatArray:
+    def corrected(
+        self, position: FloatArray, *, rays: FloatArray, edge: FloatArray, level: float
+    ) -> FloatArray:
         """Return places in water (..., 3) without the errors to be expected.
 
         Parameters
@@ -123,6 +155,8 @@ class Scattering:
             Measured [m].
         rays : array (..., 3)
             Unit directions from the sensor, in air.
+        edge : array (..., 2)
+            Distances from where pixels look on the water to the edges of the view [m].
         level : float
             Elevation of the water [m].
 
@@ -130,20 +164,32 @@ class Scattering:
         --------
         >>> table = replace(Scattering.none(), bias=np.array([-0.1]), shift=np.array([0.5]))
         >>> table.corrected(np.array([40.0, 0.0, -5.0]), rays=np.array([0.2, 0.0, -1.0]),
-        ...                 level=0.0).tolist()
+        ...                 edge=np.array([24.0, 32.0]), level=0.0).tolist()
         [39.9, 0.0, -4.9]
         """
         depth = level - position[..., 2]
         tangents = rays[..., :2] / -rays[..., 2:]
         error = np.empty_like(position)
         error[..., :2] = self.at("shift", depth)[..., None] * tangents
-        error[..., 2] = self.elevation_error(depth=depth, tangent=off_nadir(rays))
+        error[..., 2] = self.elevation_error(depth=depth, tangent=off_nadir(rays), edge=edge)
         return np.asarray(position - error)
 
 
 def off_nadir(rays: FloatArray) -> FloatArray:
     """Return the tangents of the angles off nadir of rays (..., 3) [1]."""
     return np.asarray(np.hypot(rays[..., 0], rays[..., 1]) / -rays[..., 2])
+
+
+def nearness(edge: FloatArray, *, depth: FloatArray | float) -> FloatArray:
+    """Return how near the edges are, at distances (..., 2) [m]: 1 on one, 2 in a corner, 0 inside.
+
+    Examples
+    --------
+    >>> nearness(np.array([[0.0, np.inf], [2.5, 2.5]]), depth=10.0).round(3).tolist()
+    [1.0, 0.736]
+    """
+    width = RIM_PER_DEPTH * np.asarray(depth)[..., None]
+    return np.asarray(np.exp(-edge / np.maximum(width, NARROWEST)).sum(axis=-1))
 
 
 def _surface(bottom: LevelBottom) -> tuple[FloatArray, FloatArray]:
@@ -158,12 +204,16 @@ def _fit(bottom: LevelBottom) -> dict[str, float]:
     """Return a row of the table; outliers of the errors are left out."""
     low, middle, high = np.percentile(bottom.error, [25.0, 50.0, 75.0])
     kept = np.abs(bottom.error - middle) <= OUTLIERS * max(high - low, 1e-6)
-    square, error = bottom.tangent[kept] ** 2, bottom.error[kept]
-    slant, bias = np.polyfit(square, error, 1)
+    error = bottom.error[kept]
+    near = nearness(bottom.edge, depth=bottom.depth)
+    near *= near.max() >= LEAST_NEARNESS
+    terms = np.stack([np.ones_like(near), bottom.tangent**2, near], axis=-1)[kept]
+    (bias, slant, rim), *_ = np.linalg.lstsq(terms, error)
     return {
         "depth": bottom.depth - float(error.mean()),
         "bias": float(bias),
         "bias_slant": float(slant),
+        "bias_rim": float(rim),
         "shift": -float((bottom.along @ bottom.origin) / (bottom.along @ bottom.along)),
-        "residual": float((error - bias - slant * square).std()),
+        "residual": float((error - terms @ [bias, slant, rim]).std()),
     }

@@ -4,7 +4,8 @@ Each effect is one or more vectors (n, 3): where its error of one standard devia
 points [m]. Effects are independent, so their covariances, products of these vectors, add up. TVU
 bounds the measured less the true elevation at the measured place: what moves a point sideways by h
 over a bed of slope g counts there with -g h. THU bounds the horizontal distance from the measured
-place to any place of the pixel's footprint as it is seen without scattering.
+place to any place of the pixel's footprint as it is seen without scattering: how far a point was
+moved to where scattered light was reflected counts there as an error.
 """
 
 from __future__ import annotations
@@ -112,7 +113,8 @@ class Budget:
         effects[Cause.RELIEF] = _hidden_relief(roughness, effects)
         vectors = np.concatenate(list(effects.values()))
         vertical = vectors[..., 2] - np.sum(vectors[..., :2] * slope, axis=-1)
-        covariance = np.einsum("kni,knj->nij", vectors[..., :2], vectors[..., :2])
+        sideways = np.concatenate([vectors, _moved(cloud, around)])[..., :2]
+        covariance = np.einsum("kni,knj->nij", sideways, sideways)
         placed = cloud.classification != PointClass.NO_BOTTOM_FOUND
         tvu = WITHIN_95 * np.sqrt(np.sum(vertical**2, axis=0))
         thu = radius_95(covariance=covariance, half_side=self._half_pixel(cloud, around))
@@ -129,7 +131,7 @@ class Budget:
         height, tilt = moves.of_level(), moves.of_slopes()
         return {
             Cause.RANGE_NOISE: (moves.of_time() * late[:, None])[None],
-            Cause.SCATTERING: _scattering(cloud, around, moves.rays) * wet[:, None],
+            Cause.SCATTERING: self._scattering(cloud, around, moves.rays) * wet[:, None],
             Cause.FALSE_ECHO: self._merged(cloud),
             Cause.WAVES: np.concatenate(
                 [tilt * around.unknown.slope, height[None] * around.unknown.height]
@@ -169,6 +171,21 @@ class Budget:
         vectors[0, :, 2] = np.where(near, cloud.depth, 0.0) / np.sqrt(12.0)
         return vectors
 
+    def _scattering(self, cloud: PointCloud, around: Surroundings, rays: FloatArray) -> FloatArray:
+        """Return what scattering's errors leave: a residual, a part of what was corrected."""
+        table, depth = around.scattering, cloud.depth
+        height = around.frame.measured.position[2] - around.line.level
+        corrected = table.elevation_error(
+            depth=depth,
+            tangent=off_nadir(rays),
+            edge=self.camera.edge_tangents()[cloud.row, cloud.column] * height,
+        )
+        vectors = np.zeros((3, len(cloud), 3))
+        vectors[0, :, 2] = table.at("residual", depth)
+        vectors[1, :, 2] = WATER_KNOWN * corrected
+        vectors[2] = WATER_KNOWN * _moved(cloud, around)[0]
+        return vectors
+
     def _level_error(self, line: WaterLine) -> float:
         """Return the standard error of the level that the median of first echoes tells [m]."""
         if not line.measured:
@@ -193,6 +210,15 @@ def _bed(cloud: PointCloud, shape: tuple[int, ...]) -> tuple[FloatArray, FloatAr
     return np.nan_to_num(planes.slope), planes.roughness
 
 
+def _moved(cloud: PointCloud, around: Surroundings) -> FloatArray:
+    """Return how far points were moved to where their light was reflected (1, n, 3) [m]."""
+    rays = around.rays[cloud.row, cloud.column]
+    shift = np.where(cloud.depth > 0.0, around.scattering.at("shift", cloud.depth), 0.0)
+    vectors = np.zeros((1, len(cloud), 3))
+    vectors[0, :, :2] = shift[:, None] * rays[:, :2] / -rays[:, 2:]
+    return vectors
+
+
 def _hidden_relief(roughness: FloatArray, effects: Effects) -> FloatArray:
     """Return the vectors (1, n, 3) of the relief that a footprint may hide.
 
@@ -202,15 +228,4 @@ def _hidden_relief(roughness: FloatArray, effects: Effects) -> FloatArray:
     own = np.concatenate([effects[one] for one in OF_A_PIXEL])[..., 2]
     vectors = np.zeros((1, len(roughness), 3))
     vectors[0, :, 2] = np.sqrt(np.maximum(roughness**2 - np.sum(own**2, axis=0), 0.0))
-    return vectors
-
-
-def _scattering(cloud: PointCloud, around: Surroundings, rays: FloatArray) -> FloatArray:
-    """Return what is left of scattering's errors: residual, and a part of what was corrected."""
-    table, depth = around.scattering, cloud.depth
-    tangents = rays[:, :2] / -rays[:, 2:]
-    vectors = np.zeros((3, len(cloud), 3))
-    vectors[0, :, 2] = table.at("residual", depth)
-    vectors[1, :, 2] = WATER_KNOWN * table.elevation_error(depth=depth, tangent=off_nadir(rays))
-    vectors[2, :, :2] = WATER_KNOWN * table.at("shift", depth)[:, None] * tangents
     return vectors

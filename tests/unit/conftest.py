@@ -174,6 +174,7 @@ class Look:
     """One frame over a known seabed, and where its rays truly end."""
 
     frame: Frame
+    camera: Camera
     seabed: Seabed
     surface: SeaSurface
     water: WaterColumn
@@ -234,6 +235,7 @@ def make_look(
     rays = pixel_rays(camera=camera, pose=pose)
     return Look(
         frame=Frame(index=7, line=2, time=63.0, pose=pose),
+        camera=camera,
         seabed=bed,
         surface=surface,
         water=water,

@@ -27,9 +27,16 @@ BUDGET = Budget(
 )
 
 
-def points_of(look: Any, late: float = 0.0, raised: float = 0.0, moved: float = 0.0) -> PointCloud:
+def points_of(
+    look: Any,
+    late: float = 0.0,
+    raised: float = 0.0,
+    moved: float = 0.0,
+    scattering: Scattering | None = None,
+) -> PointCloud:
     """Return points whose bottom echoes are late [s], whose surface echoes lie too high [m] and
     whose sensor is taken to be too far east [m]."""
+    scattering = scattering or Scattering.none()
     pose = replace(look.frame.pose, position=look.frame.pose.position + np.array([moved, 0.0, 0.0]))
     frame = replace(look.frame, navigation=pose)
     early = 2.0 * raised / 299792458.0 / -look.rays[..., 2]
@@ -46,17 +53,18 @@ def points_of(look: Any, late: float = 0.0, raised: float = 0.0, moved: float = 
         bottom=look.echo(look.targets.time + late),
         frame=frame,
         rays=look.rays,
+        camera=BUDGET.camera,
         targets=look.targets,
         seabed=look.seabed,
         group_index=1.36,
-        scattering=Scattering.none(),
+        scattering=scattering,
     )
     around = Surroundings(
         frame=frame,
         rays=look.rays,
         line=line,
         unknown=Unknown(height=0.0, slope=0.0),
-        scattering=Scattering.none(),
+        scattering=scattering,
         first=look.echo(look.surface_time - early),
         bottom=look.echo(look.targets.time + late),
     )
@@ -109,3 +117,15 @@ def test_a_sloping_bed_turns_errors_sideways_into_errors_of_elevation(look_at: A
     middle = (level.row == 16) & (level.column == 32)
     across = 1.96 * 0.05 * 0.5
     assert slope.tvu[middle] ** 2 - level.tvu[middle] ** 2 == pytest.approx(across**2, rel=0.1)
+
+
+def test_how_far_scattering_moves_points_counts_sideways(look_at: Any) -> None:
+    look, shift = look_at(gradient=0.0), 6.0
+    still = points_of(look)
+    shifted = points_of(look, scattering=replace(Scattering.none(), shift=np.full(1, shift)))
+    off = np.linalg.norm((shifted.position - still.position)[:, :2], axis=1)
+    rays = look.rays.reshape(-1, 3)
+    assert off == pytest.approx(shift * np.hypot(*rays[:, :2].T) / -rays[:, 2])
+    assert (shifted.thu[off > 1.0] > off[off > 1.0]).all()
+    assert shifted.thu[off > 1.0] == pytest.approx(1.96 * off[off > 1.0], rel=0.25)
+    assert shifted.tvu == pytest.approx(still.tvu, abs=0.01)

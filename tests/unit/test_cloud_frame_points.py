@@ -39,6 +39,7 @@ def bottom_of(look: Any, bottom_time: FloatArray, first_time: FloatArray) -> Poi
         bottom=look.echo(np.where(np.isfinite(line.surface_time), bottom_time, np.nan)),
         frame=look.frame,
         rays=look.rays,
+        camera=look.camera,
         targets=look.targets,
         seabed=look.seabed,
         group_index=look.water.group_index,

@@ -182,12 +182,15 @@ def test_a_table_takes_off_what_it_was_made_of() -> None:
     chance = np.random.default_rng(6)
     tangent = chance.uniform(0.0, 0.28, 2000)
     along = tangent * chance.uniform(-1.0, 1.0, 2000)
+    edge = chance.uniform(0.0, 20.0, (2000, 2))
 
     def bottom(depth: float) -> LevelBottom:
+        rim = 0.01 * depth * np.exp(-4.0 * edge / depth).sum(axis=-1)
         return LevelBottom(
             depth=depth,
             tangent=tangent,
-            error=-0.02 * depth + 0.05 * depth * tangent**2 + chance.normal(0.0, 0.01, 2000),
+            error=-0.02 * depth + 0.05 * depth * tangent**2 + rim + chance.normal(0.0, 0.01, 2000),
+            edge=edge,
             along=along,
             origin=-0.04 * depth * along + chance.normal(0.0, 0.05, 2000),
             surface_late=1e-9 * tangent,
@@ -197,8 +200,10 @@ def test_a_table_takes_off_what_it_was_made_of() -> None:
     assert table.shift[1] == pytest.approx(0.16, abs=0.03)
     assert table.residual == pytest.approx(0.01, rel=0.1)
     rays = np.array([0.2, 0.0, -1.0])
-    error = -0.02 * 6.0 + 0.05 * 6.0 * 0.04
-    fixed = table.corrected(np.array([40.0, 0.0, -6.0 + error]), rays=rays, level=0.0)
+    error = -0.02 * 6.0 + 0.05 * 6.0 * 0.04 + 0.01 * 6.0 * (1.0 + np.exp(-1.0))
+    fixed = table.corrected(
+        np.array([40.0, 0.0, -6.0 + error]), rays=rays, edge=np.array([0.0, 1.5]), level=0.0
+    )
     assert fixed[2] == pytest.approx(-6.0, abs=0.005)
     assert fixed[0] == pytest.approx(40.0 - 0.2 * 0.04 * 6.0, abs=0.01)
     assert np.interp(0.14, table.surface_tangent, table.surface_late) == pytest.approx(

@@ -233,6 +233,7 @@ def georeferenced(look: Any, navigation: Navigation) -> PointCloud:
         bottom=bottom,
         frame=frame,
         rays=rays,
+        camera=camera(),
         targets=targets,
         seabed=look.seabed,
         group_index=look.water.group_index,
