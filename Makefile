@@ -7,6 +7,15 @@ OTHER_RUN := 5
 
 SLOW := bad_input faults mutants physics regression scale scenarios statistics unit web
 
+# Slow parts that leave cores idle fly two tests at once; what measures time stays alone.
+TWO_BY_TEST := --numprocesses=2 --dist=worksteal
+TWO_BY_FILE := --numprocesses=2 --dist=loadfile
+ABREAST_bad_input := $(TWO_BY_TEST)
+ABREAST_faults := $(TWO_BY_TEST)
+ABREAST_physics := $(TWO_BY_FILE)
+ABREAST_scenarios := $(TWO_BY_FILE)
+ABREAST_unit := $(TWO_BY_FILE)
+
 .PHONY: help venv libraries chromium demo gallery notebook test slow bench check format site figures web-bundle $(SLOW:%=slow-%)
 
 help:
@@ -60,7 +69,7 @@ test: libraries chromium check
 slow: $(SLOW:%=slow-%)
 
 $(SLOW:%=slow-%): slow-%: libraries $(READY)
-	$(BIN)/python -m pytest -m slow tests/$*
+	$(BIN)/python -m pytest -m slow tests/$* $(ABREAST_$*)
 
 bench: $(READY)
 	$(BIN)/python tests/benchmarks/kernels.py
