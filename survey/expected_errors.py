@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from math import inf, sqrt
 
@@ -91,10 +92,14 @@ class LevelBottoms:
                 return
 
     def _bottom(self, depth: float, number: int) -> LevelBottom | None:
+        pose = self.frame.pose
+        forward, right, _ = pose.body_to_map().T
+        axis = (forward if self.camera.long_side == "along" else right)[:2]
         even = self._even_bed(depth)
-        engine, pose = self.engine(even), self.frame.pose
-        rays = pixel_rays(camera=self.camera, pose=pose)
-        light = engine.flash(pose=pose, frame=number)
+        engines = [self.engine(bed) for bed in (even, _growing(even, axis, self._half_length))]
+        with ThreadPoolExecutor(2) as both:
+            light, brighter = both.map(lambda one: one.flash(pose=pose, frame=number), engines)
+        rays, engine = pixel_rays(camera=self.camera, pose=pose), engines[0]
         path = bend_at_surface(
             position=pose.position,
             rays=rays,
@@ -105,11 +110,6 @@ class LevelBottoms:
         found = np.isfinite(measured) & np.isfinite(late)
         if found.mean() < ENOUGH or found.sum() < FEWEST:
             return None
-        forward, right, _ = pose.body_to_map().T
-        axis = (forward if self.camera.long_side == "along" else right)[:2]
-        brighter = self.engine(_growing(even, axis, self._half_length)).flash(
-            pose=pose, frame=number
-        )
         origin = self._half_length * (self._gain(brighter, light) - 1.0)
         found &= np.isfinite(origin)
         if found.sum() < FEWEST:
