@@ -120,7 +120,7 @@ class LevelBottoms:
             depth=depth,
             tangent=off_nadir(rays)[found],
             error=measured[found] - (self.level - depth),
-            edge=self.camera.edge_tangents()[found] * (pose.position[2] - self.level),
+            edge=self.camera.edge_distances(height=pose.position[2] - self.level)[found],
             along=(tangents @ axis)[found],
             origin=(origin - centre[..., :2] @ axis)[found],
             surface_late=late[found],
@@ -150,10 +150,7 @@ class LevelBottoms:
         The bottom's is told from water at its true level, and from light that touched it once.
         """
         noise = self.noise
-        speed = speed_of_light / engine.water.group_index
-        gate = 0.5 * speed * noise.gate_bins * noise.bin_width
-        reach = depth + max(FIRST_BOUNCE_DEPTHS * depth, FIRST_BOUNCE_GATES * gate)
-        end = path.air_time + 2.0 * reach / -path.direction[..., 2] / speed
+        end = self._end_of_first_bounce(path, depth, engine.water.group_index)
         bins = noise.bin_start + noise.bin_width * np.arange(light.total.shape[-1])
         counts = np.where(
             bins < end[..., None],
@@ -167,6 +164,13 @@ class LevelBottoms:
         bottom = search.echo(counts)
         place = place_in_water(path=path, time=bottom.time, group_index=engine.water.group_index)
         return first.time - path.air_time, place[..., 2]
+
+    def _end_of_first_bounce(self, path: WaterPath, depth: float, group_index: float) -> FloatArray:
+        """Return until when light comes that touched the bottom once (rows, columns) [s]."""
+        speed = speed_of_light / group_index
+        gate = 0.5 * speed * self.noise.gate_bins * self.noise.bin_width
+        reach = depth + max(FIRST_BOUNCE_DEPTHS * depth, FIRST_BOUNCE_GATES * gate)
+        return np.asarray(path.air_time + 2.0 * reach / -path.direction[..., 2] / speed)
 
     def _gain(self, brighter: Waveforms, light: Waveforms) -> FloatArray:
         """Return by how much the bottom is brighter in the strongest gate of each pixel.

@@ -206,7 +206,7 @@ def bottom_points(
     """
     found = bottom.found
     refracted = place_in_water(path=line.path, time=bottom.time, group_index=group_index)
-    edge = camera.edge_tangents() * (frame.measured.position[2] - line.level)
+    edge = camera.edge_distances(height=frame.measured.position[2] - line.level)
     corrected = scattering.corrected(refracted, rays=rays, edge=edge, level=line.level)
     straight = place_in_air(position=frame.measured.position, rays=rays, time=bottom.time)
     on_land, in_water = line.land[..., None], found[..., None]

@@ -175,11 +175,8 @@ class Budget:
         """Return what scattering's errors leave: a residual, a part of what was corrected."""
         table, depth = around.scattering, cloud.depth
         height = around.frame.measured.position[2] - around.line.level
-        corrected = table.elevation_error(
-            depth=depth,
-            tangent=off_nadir(rays),
-            edge=self.camera.edge_tangents()[cloud.row, cloud.column] * height,
-        )
+        edge = self.camera.edge_distances(height=height)[cloud.row, cloud.column]
+        corrected = table.elevation_error(depth=depth, tangent=off_nadir(rays), edge=edge)
         vectors = np.zeros((3, len(cloud), 3))
         vectors[0, :, 2] = table.at("residual", depth)
         vectors[1, :, 2] = WATER_KNOWN * corrected

@@ -62,18 +62,20 @@ class Camera:
             return -from_column, from_row
         return -from_row, from_column
 
-    def edge_tangents(self) -> FloatArray:
-        """Return how far pixel centres are from the nearer edges of the view [1].
+    def edge_distances(self, *, height: float) -> FloatArray:
+        """Return how far pixel centres are from the nearer edges of the view [m].
 
-        Array (rows, columns, 2) in the tangent plane, forward or aft and to the left or right.
+        Array (rows, columns, 2) on level ground ``height`` [m] below a level camera, forward or aft
+        and to the left or right.
 
         Examples
         --------
         >>> camera = Camera(rows=2, columns=4, pixel_tangent=0.01, long_side="along")
-        >>> camera.edge_tangents()[0].round(3).tolist()
-        [[0.005, 0.005], [0.015, 0.005], [0.015, 0.005], [0.005, 0.005]]
+        >>> camera.edge_distances(height=200.0)[0].round(3).tolist()
+        [[1.0, 1.0], [3.0, 1.0], [3.0, 1.0], [1.0, 1.0]]
         """
-        return np.asarray(self.half_tangents - np.abs(np.stack(self.pixel_centres(), axis=-1)))
+        centres = np.stack(self.pixel_centres(), axis=-1)
+        return np.asarray((self.half_tangents - np.abs(centres)) * height)
 
     def nearest_pixel(
         self, forward: FloatArray, right: FloatArray
