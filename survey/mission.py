@@ -174,6 +174,7 @@ def fly(
     frames: range | None = None,
     refly: bool = False,
     watch: Watcher | None = None,
+    mission: Mission | None = None,
 ) -> Path:
     """Fly a mission into a run folder, and go on where an earlier run of it stopped.
 
@@ -196,6 +197,8 @@ def fly(
         Remove what an earlier run left in the folder, whatever it was a run of.
     watch : Watcher, optional
         Is told of the progress, such as `survey.PlainLines`; ``log.txt`` in the folder is too.
+    mission : Mission, optional
+        What `survey.preparation.prepare` made of the scenario already.
 
     Returns
     -------
@@ -215,7 +218,7 @@ def fly(
     """
     path = Path(folder)
     require_free(path)
-    mission = prepare(scenario)
+    mission = mission or prepare(scenario)
     run = RunFolder.open(path, scenario, refly=refly)
     with sole_pilot(path), logged(path, watch or Unwatched()) as told:
         crew = crew or local_crew(workers)

@@ -18,6 +18,7 @@ from survey.paper import instrument
 from survey.paper.reproduce import Findings
 from survey.paper.single_element import MATRIX
 from survey.planning.expectation import expectation
+from survey.preparation import Mission, prepare
 from survey.products.accuracy import StitchedDepths
 from survey.products.frame_file import FrameResult
 from survey.products.reach import optical_depths
@@ -35,7 +36,8 @@ SEAS: Mapping[str, dict[str, Any]] = {
             "kind": "plane",
             "depth_m": instrument.BOTTOM_DEPTH,
             "reflectance": instrument.BOTTOM_REFLECTANCE,
-        }
+        },
+        "flight.frames_per_line": 4,  # all look upon the same
     },
 }
 HIDDEN = 0.01
@@ -66,7 +68,7 @@ class PaperFlight:
     def scenario(self, changes: Mapping[str, Any]) -> Scenario:
         """Return its scenario, with further changes by dotted key."""
         own = {"sun.day": self.sun == "day", **SEAS[self.sea]}
-        return load_scenario(f"paper-{self.water.lower()}").replace(**own, **changes)
+        return load_scenario(f"paper-{self.water.lower()}").replace({**own, **changes})
 
 
 FLIGHTS = tuple(
@@ -109,11 +111,12 @@ def fly_all(
     OtherRunError
         When a run folder belongs to another scenario or to other code.
     """
-    rows = {}
+    rows, missions = dict[str, dict[str, Any]](), dict[tuple[str, str], Mission]()
     for flight in flights:
         tell(f"flight {flight.name}")
-        scenario = flight.scenario(changes or {})
-        results = _flown(scenario, folder / flight.name)
+        scenario, light = flight.scenario(changes or {}), (flight.water, flight.sun)
+        missions[light] = prepare(scenario, alike=missions.get(light))
+        results = _flown(missions[light], scenario, folder / flight.name)
         limit = limits[flight.water][flight.sun]
         rows[flight.name] = judge(scenario, results, limit=limit)
     return rows
@@ -186,9 +189,9 @@ def judge(
     return {name: None if value is None else round(value, DIGITS) for name, value in values.items()}
 
 
-def _flown(scenario: Scenario, folder: Path) -> list[FrameResult]:
+def _flown(mission: Mission, scenario: Scenario, folder: Path) -> list[FrameResult]:
     """Fly into a run folder and return all frames; no bottom at all is a result too."""
     with suppress(ProductError):
-        fly(scenario, folder, workers=scenario.run.workers)
+        fly(scenario, folder, workers=scenario.run.workers, mission=mission)
     run = RunFolder.open(folder, scenario)
     return [run.frame(index) for index in sorted(run.whole)]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from math import hypot
@@ -37,14 +38,14 @@ from survey.scenario.seabed_objects import cubes
 from survey.sensor.camera import Camera
 from survey.sensor.detector import Detector, Readings
 from survey.transport.engine import Engine
-from survey.transport.waveforms import pulse_taps
+from survey.transport.waveforms import Waveforms, pulse_taps
 from terrain.generators import Ground, plane
 from terrain.sea_surface import SeaSurface
 from terrain.seabed import Seabed
 
 FloatArray = NDArray[np.float64]
 
-MODEL_FLASHES = 4
+MODEL_FLASHES, ABREAST = 4, 2
 FIRST_MODEL_FRAME = 1 << 31
 SHALLOWEST_CALIBRATED = 0.1  # [m]
 CALIBRATED_DEPTHS = 40
@@ -105,8 +106,15 @@ class Mission:
         )
 
 
-def prepare(scenario: Scenario) -> Mission:
+def prepare(scenario: Scenario, *, alike: Mission | None = None) -> Mission:
     """Build seabed, flight, engine and noise model, and refuse a flight that leaves the seabed.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    alike : Mission, optional
+        Of a scenario that differs in seabed or number of frames alone: what it expects of the
+        water, which knows of neither, is taken from there.
 
     Raises
     ------
@@ -118,7 +126,9 @@ def prepare(scenario: Scenario) -> Mission:
     seabed = components.seabed(scenario)
     seabed.require_coverage(footprints(camera, frames, surface.lowest_level))
     require_air(frames, highest=seabed.grid.z_high)
-    noise, settings = posed_noise(scenario, frames[0], surface), product_settings(scenario)
+    noise = alike.posed_noise if alike else posed_noise(scenario, frames[0], surface)
+    expected_errors = partial(_scattering, scenario, noise, surface)
+    settings = product_settings(scenario)
     return Mission(
         frames=frames,
         camera=camera,
@@ -142,7 +152,7 @@ def prepare(scenario: Scenario) -> Mission:
             waves=_wave_statistics(surface, pixel=camera.pixel_tangent * scenario.flight.height_m),
             refractive_index=water.refractive_index,
         ),
-        scattering=_once(partial(_scattering, scenario, noise, surface)),
+        scattering=alike.scattering if alike else _once(expected_errors),
         calibration=_calibration(scenario, frames[0], surface),
         products=settings,
         raw_step=RAW_STEPS[scenario.processing.keep_waveforms],
@@ -307,18 +317,23 @@ def _seen_pulse(scenario: Scenario) -> float:
 
 
 def _mean_flash(engine: Engine, pose: Pose) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return mean photo-electrons, those of the surface, and mean squared error of a flash.
-
-    Of the model's flashes, one at a time.
-    """
+    """Return mean photo-electrons, those of the surface, and mean squared error of a flash."""
     shape = (*engine.camera.shape, engine.receiver.bins)
     light, surface, variance = np.zeros(shape), np.zeros(shape), np.zeros(shape)
-    for number in range(MODEL_FLASHES):
-        flash = engine.flash(pose=pose, frame=FIRST_MODEL_FRAME + number)
+    for flash in _model_flashes(engine, pose):
         light += flash.total / MODEL_FLASHES
         surface += flash.origin("surface") / MODEL_FLASHES
         variance += flash.variance.sum(axis=0) / MODEL_FLASHES
     return light, surface, variance
+
+
+def _model_flashes(engine: Engine, pose: Pose) -> Iterator[Waveforms]:
+    """Yield the model's flashes in their order; no more are held than fly abreast."""
+    last = FIRST_MODEL_FRAME + MODEL_FLASHES
+    with ThreadPoolExecutor(ABREAST) as crew:
+        for number in range(FIRST_MODEL_FRAME, last, ABREAST):
+            some = range(number, min(number + ABREAST, last))
+            yield from crew.map(lambda frame: engine.flash(pose=pose, frame=frame), some)
 
 
 def _engine(scenario: Scenario, seabed: Seabed, water: WaterColumn, surface: SeaSurface) -> Engine:

@@ -5,11 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
 
+from survey import preparation
 from survey.cloud.points import PointClass
+from survey.expected_errors import LevelBottoms
 from survey.paper_flights import FLIGHTS, fly_all
 from survey.products.accuracy import StitchedDepths
 
@@ -48,6 +51,21 @@ def test_a_bed_that_falls_is_lost_near_the_expected_depth(tmp_path: Path) -> Non
     assert row["stitched_depth_k_d_z"] == pytest.approx(0.19 * row["stitched_depth_m"], rel=0.01)
     assert 33.0 < row["true_depth_greatest_m"] < 35.0
     assert 0.4 < row["found_fraction"] < 0.8
+
+
+def test_the_water_of_two_beds_is_reckoned_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The second flight's products are those of a flight of its own."""
+    models = [Mock(wraps=preparation.posed_noise), Mock(wraps=LevelBottoms)]
+    for name, model in zip(["posed_noise", "LevelBottoms"], models, strict=True):
+        monkeypatch.setattr(preparation, name, model)
+    changes = SMALL | {"flight.frames_per_line": 1}
+    flights = [flight_of("p05-slope-day"), flight_of("p05-flat-day")]
+    together = fly_all(tmp_path, limits=LIMITS, flights=flights, changes=changes)
+    assert [model.call_count for model in models] == [1, 1]
+    alone = fly_all(tmp_path / "alone", limits=LIMITS, flights=flights[1:], changes=changes)
+    assert together["p05-flat-day"] == alone["p05-flat-day"]
 
 
 def test_nothing_found_is_a_result_too(tmp_path: Path) -> None:
