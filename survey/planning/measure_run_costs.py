@@ -36,8 +36,7 @@ BOTTOMLESS = 1000.0  # [m]
 ERROR_FLASHES = 6
 FAINTEST = 1e-30
 BINS = {"clear": 500, "coastal": 400, "harbor": 300}
-SIZED = {"water.type": "coastal", "flight.frames_per_line": 3}
-SIZED_DEPTH = 6.0
+SIZED_FRAMES, SIZED_DEPTH = (2, 12), 6.0
 CLOUDS = ("bottom.laz", "bottom.ply", "water_surface.laz", "water_surface.ply")
 RASTERS = ("bathymetry.tif", "bathymetry.glb")
 DIGITS = 3
@@ -92,23 +91,22 @@ def _timed(name: str, depth: float) -> dict[str, Any]:
 
 
 def _products() -> dict[str, Any]:
-    """Return what finished products cost, and the bytes of a small run's files."""
-    scenario = _scenario("coastal", SIZED_DEPTH, **SIZED)
-    mission = prepare(scenario)
-    frames = len(mission.frames)
-    flown = frames * mission.camera.rows * mission.camera.columns
+    """Return what finished products cost a run and each pixel, and the bytes of a run's files."""
+    few, many = SIZED_FRAMES
     with tempfile.TemporaryDirectory() as folder:
-        run = fly(scenario, Path(folder) / "run", workers=1)
-        start = time.process_time()
-        prepare(scenario)
-        prepared = time.process_time()
-        fly(scenario, run)  # all frames are there: prepares and writes products
-        seconds = time.process_time() - prepared - (prepared - start)
+        seconds = [_written(frames, Path(folder) / str(frames)) for frames in SIZED_FRAMES]
+        run = Path(folder) / str(many)
         sizes = {path.relative_to(run).as_posix(): path.stat().st_size for path in run.rglob("*")}
         cells = _cells(run / "bathymetry.tif")
+    scenario = _sized(many)
+    mission = prepare(scenario)
+    pixels = mission.camera.rows * mission.camera.columns
+    per_pixel = max(seconds[1] - seconds[0], 0.0) / ((many - few) * pixels)
     kept = sum(size for name, size in sizes.items() if name.startswith("frames/"))
+    flown = many * pixels
     return {
-        "products_s_per_pixel": _number(max(seconds, 0.0) / flown),
+        "products_s": _number(max(seconds[0] - few * pixels * per_pixel, 0.0)),
+        "products_s_per_pixel": _number(per_pixel),
         "bytes": {
             "frame_per_pixel": _number(kept / flown),
             "clouds_per_pixel": _number(sum(sizes[name] for name in CLOUDS) / flown),
@@ -116,6 +114,21 @@ def _products() -> dict[str, Any]:
             "raw_per_pixel_and_bin": _number(_raw_bytes(scenario, mission)),
         },
     }
+
+
+def _sized(frames: int) -> Scenario:
+    changes = {"water.type": "coastal", "flight.frames_per_line": frames}
+    return _scenario("coastal", SIZED_DEPTH, **changes)
+
+
+def _written(frames: int, folder: Path) -> float:
+    """Fly a run and return the seconds in which its products are written once more."""
+    scenario = _sized(frames)
+    mission = prepare(scenario)
+    fly(scenario, folder, workers=1, mission=mission)
+    start = time.process_time()
+    fly(scenario, folder, workers=1, mission=mission)
+    return time.process_time() - start
 
 
 def _cells(raster: Path) -> int:

@@ -24,13 +24,15 @@ from survey.planning.overlap import (
 )
 from survey.planning.run_costs import RunSize, output_bytes, run_seconds
 from survey.planning.views import SAMPLES_ON_EDGE, Ground, UnderWater, Views, WaterSurface, views
-from survey.preparation import MODEL_FLASHES, RAW_STEPS
+from survey.preparation import ABREAST, MODEL_FLASHES, RAW_STEPS
 from survey.scenario import components
 from survey.scenario.scenario import Scenario
 from survey.sensor.camera import Camera
 from terrain.coverage import CoverageError
 from terrain.map_frame import MapFrame
 from terrain.seabed import Seabed
+
+TABLE_DEPTHS = 7  # as a rule, see `survey.expected_errors`
 
 FloatArray = NDArray[np.float64]
 
@@ -164,7 +166,7 @@ def make_plan(scenario: Scenario) -> SurveyPlan:
         bins=scenario.receiver.bins,
         walks_per_pixel=scenario.transport.walks_per_pixel,
         scattering_depth=float(water.scattered(np.nan_to_num(depth[1]))),
-        model_frames=MODEL_FLASHES,
+        model_frames=_model_frames(scenario),
         area=bottom.swath.seen_area,
         grid=scenario.processing.grid_m,
         waveform_step=RAW_STEPS[scenario.processing.keep_waveforms],
@@ -189,6 +191,12 @@ def make_plan(scenario: Scenario) -> SurveyPlan:
         workers=workers,
         seabed_fault=_seabed_fault(seabed, at_surface.views),
     )
+
+
+def _model_frames(scenario: Scenario) -> int:
+    """Return the flashes in turn for noise model and table of scattering; two fly abreast."""
+    table = TABLE_DEPTHS if scenario.processing.correct_scattering else 0
+    return MODEL_FLASHES // ABREAST + table
 
 
 def _coverage(
