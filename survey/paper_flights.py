@@ -115,7 +115,8 @@ def fly_all(
     for flight in flights:
         tell(f"flight {flight.name}")
         scenario, light = flight.scenario(changes or {}), (flight.water, flight.sun)
-        missions[light] = prepare(scenario, alike=missions.get(light))
+        others = (missions[water, sun] for water, sun in missions if water == flight.water)
+        missions[light] = prepare(scenario, alike=missions.get(light) or next(others, None))
         results = _flown(missions[light], scenario, folder / flight.name)
         limit = limits[flight.water][flight.sun]
         rows[flight.name] = judge(scenario, results, limit=limit)

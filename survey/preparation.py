@@ -113,8 +113,8 @@ def prepare(scenario: Scenario, *, alike: Mission | None = None) -> Mission:
     ----------
     scenario : Scenario
     alike : Mission, optional
-        Of a scenario that differs in seabed or number of frames alone: what it expects of the
-        water, which knows of neither, is taken from there.
+        Of a scenario that differs in seabed, number of frames or sun alone: the light of its water
+        is taken from there, and under the same sun what scattering does.
 
     Raises
     ------
@@ -126,8 +126,7 @@ def prepare(scenario: Scenario, *, alike: Mission | None = None) -> Mission:
     seabed = components.seabed(scenario)
     seabed.require_coverage(footprints(camera, frames, surface.lowest_level))
     require_air(frames, highest=seabed.grid.z_high)
-    noise = alike.posed_noise if alike else posed_noise(scenario, frames[0], surface)
-    expected_errors = partial(_scattering, scenario, noise, surface)
+    noise = posed_noise(scenario, frames[0], surface, alike=alike.posed_noise if alike else None)
     settings = product_settings(scenario)
     return Mission(
         frames=frames,
@@ -152,7 +151,7 @@ def prepare(scenario: Scenario, *, alike: Mission | None = None) -> Mission:
             waves=_wave_statistics(surface, pixel=camera.pixel_tangent * scenario.flight.height_m),
             refractive_index=water.refractive_index,
         ),
-        scattering=alike.scattering if alike else _once(expected_errors),
+        scattering=_expected_errors(scenario, noise, surface, alike),
         calibration=_calibration(scenario, frames[0], surface),
         products=settings,
         raw_step=RAW_STEPS[scenario.processing.keep_waveforms],
@@ -204,12 +203,15 @@ def _second_look_rate(frames: Sequence[Frame], settings: ProductSettings) -> flo
     return rule.candidate_rate
 
 
-def posed_noise(scenario: Scenario, frame: Frame, sea: SeaSurface) -> PosedNoise:
+def posed_noise(
+    scenario: Scenario, frame: Frame, sea: SeaSurface, *, alike: PosedNoise | None = None
+) -> PosedNoise:
     """Return what a flash reads over water without a bottom, and the thresholds above it.
 
     The column is that of the water that is expected, from flashes of its own over a bottom that
     nothing can reach; a survey would know it from its deep water. Of resolved waves it knows the
-    slopes' statistics alone: all of them stand on the mean level.
+    slopes' statistics alone: all of them stand on the mean level. One that is alike, but for sun
+    and darkness, lends its light.
     """
     level_sea = replace(sea, waves=None, tide=None)
     water = components.expected_water(scenario)
@@ -220,20 +222,33 @@ def posed_noise(scenario: Scenario, frame: Frame, sea: SeaSurface) -> PosedNoise
         pitch=0.0,
         heading=frame.measured.heading,
     )
-    light, surface, variance = _mean_flash(engine, pose)
+    if alike is None:
+        light, surface, variance = _mean_flash(engine, pose)
+        column = light - surface
+    else:
+        surface, column, variance = alike.surface, alike.column, alike.variance
     radiance = components.background_radiance(scenario)
     build = partial(noise_model, scenario, steady_light(scenario, radiance))
-    level = build(light, variance)
+    level = build(surface + column, variance)
     return PosedNoise(
         level=replace(level, surface_walk=surface_walk(level)),
         pose=pose,
         camera=engine.camera,
         water_level=engine.surface.level,
         surface=surface,
-        column=light - surface,
+        column=column,
         variance=variance,
         build=build,
     )
+
+
+def _expected_errors(
+    scenario: Scenario, noise: PosedNoise, sea: SeaSurface, alike: Mission | None
+) -> Callable[[], Scattering]:
+    """Return what makes the table of scattering; it depends on the sun, for the search does."""
+    if alike and alike.noise.steady_light == noise.level.steady_light:
+        return alike.scattering
+    return _once(partial(_scattering, scenario, noise, sea))
 
 
 def _scattering(scenario: Scenario, noise: PosedNoise, sea: SeaSurface) -> Scattering:

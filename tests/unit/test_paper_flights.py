@@ -53,19 +53,25 @@ def test_a_bed_that_falls_is_lost_near_the_expected_depth(tmp_path: Path) -> Non
     assert 0.4 < row["found_fraction"] < 0.8
 
 
-def test_the_water_of_two_beds_is_reckoned_once(
+def test_the_light_of_a_water_is_reckoned_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The second flight's products are those of a flight of its own."""
-    models = [Mock(wraps=preparation.posed_noise), Mock(wraps=LevelBottoms)]
-    for name, model in zip(["posed_noise", "LevelBottoms"], models, strict=True):
+    """What it does to ranges once for each sun; products are those of flights of their own."""
+    models = [Mock(wraps=preparation._mean_flash), Mock(wraps=LevelBottoms)]
+    for name, model in zip(["_mean_flash", "LevelBottoms"], models, strict=True):
         monkeypatch.setattr(preparation, name, model)
     changes = SMALL | {"flight.frames_per_line": 1}
-    flights = [flight_of("p05-slope-day"), flight_of("p05-flat-day")]
+    flights = [flight_of(f"p05-{name}") for name in ("slope-day", "slope-night", "flat-night")]
     together = fly_all(tmp_path, limits=LIMITS, flights=flights, changes=changes)
-    assert [model.call_count for model in models] == [1, 1]
-    alone = fly_all(tmp_path / "alone", limits=LIMITS, flights=flights[1:], changes=changes)
-    assert together["p05-flat-day"] == alone["p05-flat-day"]
+    assert [model.call_count for model in models] == [1, 2]
+    for flight in flights[1:]:
+        alone = fly_all(tmp_path / "alone", limits=LIMITS, flights=[flight], changes=changes)
+        assert together[flight.name] == alone[flight.name]
+        frames = [
+            next((f / flight.name / "frames").glob("*.npz")).read_bytes()
+            for f in (tmp_path, tmp_path / "alone")
+        ]
+        assert frames[0] == frames[1]
 
 
 def test_nothing_found_is_a_result_too(tmp_path: Path) -> None:
