@@ -15,7 +15,7 @@ from survey.cloud.bottom_search import BottomSearch
 from survey.cloud.georeference import WaterPath, bend_at_surface, pixel_rays, place_in_water
 from survey.cloud.noise import NoiseModel, gate_sums
 from survey.cloud.ranging import first_echo
-from survey.cloud.scattering import LevelBottom, Scattering, off_nadir
+from survey.cloud.scattering import TABLE_REFLECTANCE, LevelBottom, Scattering, off_nadir
 from survey.flight.pose import Frame
 from survey.sensor.camera import Camera
 from survey.transport.engine import Engine
@@ -35,7 +35,6 @@ FIRST_BOUNCE_DEPTHS, FIRST_BOUNCE_GATES = 0.5, 1.25
 Half way to the second bounce, but not within the pulse of the first: at half of 2 m the cut would
 move a bottom of coastal water by 0.01 m.
 """
-REFLECTANCE = 0.15  # assumed: sand
 CELL = 1.0  # [m]
 BEYOND = 25.0  # how far the bottom goes on beyond the view [m]
 ENOUGH, FEWEST = 0.5, 32  # share and number of pixels with an echo
@@ -46,7 +45,8 @@ class LevelBottoms:
     """Flashes over level bottoms in the expected water, and the ranging that a mission uses.
 
     A bottom whose reflectance grows along an axis, lit and seen by the same walks as an even one,
-    tells by its brightness where on the axis the light of a pixel was reflected.
+    tells by its brightness where on the axis the light of a pixel was reflected, and what the
+    brightness of a bottom does to its range.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ class LevelBottoms:
         even = self._even_bed(depth)
         engines = [self.engine(bed) for bed in (even, _growing(even, axis, self._half_length))]
         with ThreadPoolExecutor(2) as both:
-            light, brighter = both.map(lambda one: one.flash(pose=pose, frame=number), engines)
+            light, uneven = both.map(lambda one: one.flash(pose=pose, frame=number), engines)
         rays, engine = pixel_rays(camera=self.camera, pose=pose), engines[0]
         path = bend_at_surface(
             position=pose.position,
@@ -107,11 +107,12 @@ class LevelBottoms:
             refractive_index=engine.water.refractive_index,
         )
         late, measured = self._measured(engine, light, path, depth)
+        _, second = self._measured(engine, uneven, path, depth)
         found = np.isfinite(measured) & np.isfinite(late)
         if found.mean() < ENOUGH or found.sum() < FEWEST:
             return None
-        origin = self._half_length * (self._gain(brighter, light) - 1.0)
-        found &= np.isfinite(origin)
+        brightness = self._gain(uneven, light)
+        found &= np.isfinite(brightness)
         if found.sum() < FEWEST:
             return None
         tangents = rays[..., :2] / -rays[..., 2:]
@@ -122,8 +123,10 @@ class LevelBottoms:
             error=measured[found] - (self.level - depth),
             edge=self.camera.edge_distances(height=pose.position[2] - self.level)[found],
             along=(tangents @ axis)[found],
-            origin=(origin - centre[..., :2] @ axis)[found],
+            origin=(self._half_length * (brightness - 1.0) - centre[..., :2] @ axis)[found],
             surface_late=late[found],
+            brightness=brightness[found],
+            second_error=second[found] - (self.level - depth),
         )
 
     def _even_bed(self, depth: float) -> Seabed:
@@ -132,7 +135,7 @@ class LevelBottoms:
             length=2.0 * self._half_length,
             width=2.0 * self._half_length,
             axis=self.frame.pose.heading,
-            reflectance=REFLECTANCE,
+            reflectance=TABLE_REFLECTANCE,
         )
         return plane(ground=ground, depth=depth - self.level, spacing=CELL)
 
@@ -172,13 +175,13 @@ class LevelBottoms:
         reach = depth + max(FIRST_BOUNCE_DEPTHS * depth, FIRST_BOUNCE_GATES * gate)
         return np.asarray(path.air_time + 2.0 * reach / -path.direction[..., 2] / speed)
 
-    def _gain(self, brighter: Waveforms, light: Waveforms) -> FloatArray:
+    def _gain(self, uneven: Waveforms, light: Waveforms) -> FloatArray:
         """Return by how much the bottom is brighter in the strongest gate of each pixel.
 
         nan where the bottom sends no light at all.
         """
         sums, more = (
-            gate_sums(each.origin("bottom"), self.noise.gate_bins) for each in (light, brighter)
+            gate_sums(each.origin("bottom"), self.noise.gate_bins) for each in (light, uneven)
         )
         best = sums.argmax(axis=-1)[..., None]
         here, there = (np.take_along_axis(each, best, -1)[..., 0] for each in (sums, more))

@@ -99,6 +99,7 @@ def observe(mission: Mission, frame: Frame) -> Observation:
         seabed=mission.seabed,
         group_index=engine.water.group_index,
         scattering=mission.scattering(),
+        calibration=mission.calibration,
     )
     around = Surroundings(
         frame=frame,
@@ -152,9 +153,8 @@ def _judged(
     bed: PointCloud | None = None,
 ) -> PointCloud:
     """Return points with their uncertainties, reflectance and true causes of error."""
-    told = mission.calibration.applied(
-        mission.budget.applied(cloud, around, bed=bed), frame=around.frame
-    )
+    bright = mission.calibration.applied(cloud, frame=around.frame)
+    told = mission.budget.applied(bright, around, bed=bed)
     return with_causes(
         told,
         budget=mission.budget,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +20,7 @@ from survey.cloud.georeference import (
 from survey.cloud.local_surface import fitted_planes
 from survey.cloud.lone_echoes import stands_alone, stands_high
 from survey.cloud.points import Cause, PointClass, PointCloud
+from survey.cloud.reflectance import Calibration
 from survey.cloud.scattering import Scattering
 from survey.cloud.truth import TrueTargets
 from survey.flight.pose import Frame
@@ -198,6 +200,7 @@ def bottom_points(
     seabed: Seabed,
     group_index: float,
     scattering: Scattering,
+    calibration: Calibration,
 ) -> PointCloud:
     """Return one point a pixel: bottom (40), object (43), land (2), or none found (45).
 
@@ -207,7 +210,18 @@ def bottom_points(
     found = bottom.found
     refracted = place_in_water(path=line.path, time=bottom.time, group_index=group_index)
     edge = camera.edge_distances(height=frame.measured.position[2] - line.level)
-    corrected = scattering.corrected(refracted, rays=rays, edge=edge, level=line.level)
+    corrected = scattering.corrected(
+        refracted,
+        rays=rays,
+        edge=edge,
+        level=line.level,
+        reflectance=partial(
+            calibration.reflectance,
+            bottom.counts,
+            slant=-1.0 / rays[..., 2],
+            height=frame.measured.position[2] - line.level,
+        ),
+    )
     straight = place_in_air(position=frame.measured.position, rays=rays, time=bottom.time)
     on_land, in_water = line.land[..., None], found[..., None]
     position = np.where(on_land, line.first, np.where(in_water, corrected, line.path.entry))

@@ -90,16 +90,42 @@ class Calibration:
     def applied(self, cloud: PointCloud, *, frame: Frame) -> PointCloud:
         """Return the points of a frame with their reflectance, nan where there is no echo."""
         ray = cloud.uncorrected - frame.measured.position
-        slant = np.linalg.norm(ray, axis=1) / -ray[:, 2]
-        wet = cloud.depth > 0.0
-        height = frame.measured.position[2] - cloud.position[:, 2] - cloud.depth
+        reflectance = self.reflectance(
+            cloud.counts,
+            slant=np.linalg.norm(ray, axis=1) / -ray[:, 2],
+            height=frame.measured.position[2] - cloud.position[:, 2] - cloud.depth,
+            depth=cloud.depth,
+        )
+        echo = ~np.isin(cloud.classification, NO_ECHO)
+        return replace(cloud, reflectance=np.where(echo, reflectance, np.nan).astype(np.float32))
+
+    def reflectance(
+        self,
+        counts: NDArray[np.floating],
+        *,
+        slant: FloatArray,
+        height: FloatArray | float,
+        depth: FloatArray,
+    ) -> FloatArray:
+        """Return the reflectance of what sends back counts (...) [1].
+
+        Parameters
+        ----------
+        counts : array (...)
+            In the gate of the echo.
+        slant : array (...)
+            Way in air over height [1].
+        height : array (...)
+            Of the sensor above the water; over land above the land [m].
+        depth : array (...)
+            Of the bottom; 0 over land [m].
+        """
+        wet = depth > 0.0
         in_water = 1.0 / np.sqrt(1.0 - (1.0 - slant**-2.0) / self.refractive_index**2)
-        path = np.where(wet, cloud.depth * in_water, 0.0)
+        path = np.where(wet, depth * in_water, 0.0)
         index = np.where(wet, self.refractive_index, 1.0)
         lost = np.where(wet, fresnel_reflectance(1.0, 1.0 / self.refractive_index), 0.0)
         reach = index * height * slant + path
         whole = self.launched * (1.0 - lost) ** 2 / (reach * slant) ** 2 / np.pi
         kept = np.exp(np.interp(path, self.path, np.log(np.maximum(self.kept, 1e-300))))
-        reflectance = cloud.counts / (whole * kept)
-        echo = ~np.isin(cloud.classification, NO_ECHO)
-        return replace(cloud, reflectance=np.where(echo, reflectance, np.nan).astype(np.float32))
+        return np.asarray(counts / (whole * kept))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -15,7 +15,10 @@ FloatArray = NDArray[np.float64]
 ANGLES = 16
 OUTLIERS = 4.0  # deviations, from quartiles: merged with the surface, or false
 NARROWEST = 1e-3  # rim, also where a point is told above the water [m]
+TABLE_REFLECTANCE = 0.15  # assumed: sand, of the level bottoms
+FAINTEST = 0.25  # bottom whose brightness is told, over that of the table's
 LEAST_NEARNESS = 0.1  # of the outermost pixels: of less, nothing is told of the rim
+GROWING = ("depth", "bias", "bias_slant", "bias_rim", "shift")
 RIM_PER_DEPTH = 0.25
 """Width of the rim, in depths, whose pixels miss light scattered from beyond the view.
 
@@ -44,6 +47,10 @@ class LevelBottom:
         centre looks at [m].
     surface_late : array (n,)
         Time of the first echo less that of the water [s].
+    brightness : array (n,)
+        Of a second bottom there, whose reflectance is uneven, over that of this one [1].
+    second_error : array (n,)
+        The error over that one [m]; nan where it shows no echo.
     """
 
     depth: float
@@ -53,22 +60,31 @@ class LevelBottom:
     along: FloatArray
     origin: FloatArray
     surface_late: FloatArray
+    brightness: FloatArray
+    second_error: FloatArray
 
 
 @dataclass(frozen=True, kw_only=True)
 class Scattering:
     """Expected errors by measured depth; arrays (depths,).
 
+    The water under a bottom sends nothing back, but what is taken off the counts holds its light:
+    an echo seems the earlier, the fainter it is beside that light. Hence an error in proportion to
+    1 / reflectance.
+
     Parameters
     ----------
     depth : array
         Measured depth [m], growing.
     bias, bias_slant : array
-        Measured less true elevation at nadir, and what the squared tangent of the angle off nadir
-        in air adds [m].
+        Measured less true elevation at nadir over a bottom of TABLE_REFLECTANCE, and what the
+        squared tangent of the angle off nadir in air adds [m].
     bias_rim : array
         What is added at an edge of the view, beyond which no light is; it falls off inwards as
         `nearness` tells [m].
+    bias_bright : array
+        What is added over a bottom so bright that the light of the water it hides does not count
+        [m]; over one of reflectance r it is 1 - TABLE_REFLECTANCE / r of that.
     shift : array
         How much nearer to nadir light was reflected than the pixel's centre looks, over the
         tangent [m].
@@ -94,6 +110,7 @@ class Scattering:
     bias: FloatArray
     bias_slant: FloatArray
     bias_rim: FloatArray
+    bias_bright: FloatArray
     shift: FloatArray
     residual: FloatArray
     surface_tangent: FloatArray
@@ -106,10 +123,14 @@ class Scattering:
 
     @classmethod
     def fitted(cls, bottoms: Sequence[LevelBottom]) -> Scattering:
-        """Return the errors over bottoms of growing depth, by least squares over their pixels."""
+        """Return the errors over bottoms of growing depth, by least squares over their pixels.
+
+        Above the first of them what light does on its way through the water grows from nothing.
+        """
         if not bottoms:
             return cls.none()
         rows = [_fit(bottom) for bottom in bottoms]
+        rows.insert(0, rows[0] | dict.fromkeys(GROWING, 0.0))
         tangent, late = _surface(bottoms[-1])
         return cls(
             **{name: np.array([row[name] for row in rows]) for name in rows[0]},
@@ -139,13 +160,36 @@ class Scattering:
         rim = self.at("bias_rim", depth) * nearness(edge, depth=depth)
         return self.at("bias", depth) + slant + rim
 
+    def error_by_brightness(
+        self, *, depth: FloatArray, reflectance: NDArray[np.floating]
+    ) -> FloatArray:
+        """Return what is added to the error over a bottom of another reflectance [m].
+
+        A quarter of the table's stands for all fainter ones, and for what is not known.
+
+        Examples
+        --------
+        >>> table = replace(Scattering.none(), bias_bright=np.array([-0.04]))
+        >>> table.error_by_brightness(
+        ...     depth=np.array(3.0), reflectance=np.array([0.05, 0.1, 0.3])).round(3).tolist()
+        [0.08, 0.02, -0.02]
+        """
+        brightness = np.fmax(reflectance / TABLE_REFLECTANCE, FAINTEST)
+        return np.asarray(self.at("bias_bright", depth) * (1.0 - 1.0 / brightness))
+
     def on_time(self, first: Echo, rays: FloatArray) -> Echo:
         """Return first echoes as early as the water is, along rays (rows, columns, 3) in air."""
         late = np.interp(off_nadir(rays), self.surface_tangent, self.surface_late)
         return replace(first, time=first.time - late)
 
     def corrected(
-        self, position: FloatArray, *, rays: FloatArray, edge: FloatArray, level: float
+        self,
+        position: FloatArray,
+        *,
+        rays: FloatArray,
+        edge: FloatArray,
+        level: float,
+        reflectance: Callable[..., FloatArray],
     ) -> FloatArray:
         """Return places in water (..., 3) without the errors to be expected.
 
@@ -159,12 +203,15 @@ class Scattering:
             Distances from where pixels look on the water to the edges of the view [m].
         level : float
             Elevation of the water [m].
+        reflectance : callable
+            From the keyword ``depth`` (...) [m] to the reflectances that the counts tell there [1].
 
         Examples
         --------
         >>> table = replace(Scattering.none(), bias=np.array([-0.1]), shift=np.array([0.5]))
         >>> table.corrected(np.array([40.0, 0.0, -5.0]), rays=np.array([0.2, 0.0, -1.0]),
-        ...                 edge=np.array([24.0, 32.0]), level=0.0).tolist()
+        ...                 edge=np.array([24.0, 32.0]), level=0.0,
+        ...                 reflectance=lambda depth: np.array(0.1)).tolist()
         [39.9, 0.0, -4.9]
         """
         depth = level - position[..., 2]
@@ -172,6 +219,8 @@ class Scattering:
         error = np.empty_like(position)
         error[..., :2] = self.at("shift", depth)[..., None] * tangents
         error[..., 2] = self.elevation_error(depth=depth, tangent=off_nadir(rays), edge=edge)
+        told = reflectance(depth=depth + error[..., 2])
+        error[..., 2] += self.error_by_brightness(depth=depth, reflectance=told)
         return np.asarray(position - error)
 
 
@@ -202,8 +251,7 @@ def _surface(bottom: LevelBottom) -> tuple[FloatArray, FloatArray]:
 
 def _fit(bottom: LevelBottom) -> dict[str, float]:
     """Return a row of the table; outliers of the errors are left out."""
-    low, middle, high = np.percentile(bottom.error, [25.0, 50.0, 75.0])
-    kept = np.abs(bottom.error - middle) <= OUTLIERS * max(high - low, 1e-6)
+    kept = _usual(bottom.error)
     error = bottom.error[kept]
     near = nearness(bottom.edge, depth=bottom.depth)
     near *= near.max() >= LEAST_NEARNESS
@@ -214,6 +262,23 @@ def _fit(bottom: LevelBottom) -> dict[str, float]:
         "bias": float(bias),
         "bias_slant": float(slant),
         "bias_rim": float(rim),
+        "bias_bright": _bright(bottom),
         "shift": -float((bottom.along @ bottom.origin) / (bottom.along @ bottom.along)),
         "residual": float((error - terms @ [bias, slant, rim]).std()),
     }
+
+
+def _bright(bottom: LevelBottom) -> float:
+    """Return what is added to the error over a bottom of endless brightness [m]."""
+    told = np.isfinite(bottom.second_error) & (bottom.brightness >= FAINTEST)
+    if not told.any():
+        return 0.0
+    change, more = (bottom.second_error - bottom.error)[told], 1.0 - 1.0 / bottom.brightness[told]
+    kept = _usual(change)
+    return float(np.linalg.lstsq(more[kept, None], change[kept])[0][0])
+
+
+def _usual(error: FloatArray) -> NDArray[np.bool_]:
+    """Tell which are no outliers."""
+    low, middle, high = np.percentile(error, [25.0, 50.0, 75.0])
+    return np.asarray(np.abs(error - middle) <= OUTLIERS * max(high - low, 1e-6))

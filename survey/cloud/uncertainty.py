@@ -37,6 +37,8 @@ MEDIAN_OVER_MEAN = 1.2533
 """Standard error of a median over that of a mean, Gaussian errors: sqrt(pi / 2)."""
 WATER_KNOWN = 0.1
 """Assumed: a survey knows its water's scattering to 10 %, and so what it corrects by it."""
+BRIGHTNESS_KNOWN = 0.25
+"""Assumed relative error of the reflectance that counts tell."""
 OF_A_PIXEL = (Cause.RANGE_NOISE, Cause.SCATTERING, Cause.FALSE_ECHO, Cause.WAVES)
 FULL_WIDTH = 2.3548
 """Gate over the pulse's standard deviation: the width at half of the maximum."""
@@ -172,15 +174,23 @@ class Budget:
         return vectors
 
     def _scattering(self, cloud: PointCloud, around: Surroundings, rays: FloatArray) -> FloatArray:
-        """Return what scattering's errors leave: a residual, a part of what was corrected."""
+        """Return what scattering's errors leave.
+
+        A residual, a part of what was corrected, and what an error of the brightness does.
+        """
         table, depth = around.scattering, cloud.depth
         height = around.frame.measured.position[2] - around.line.level
         edge = self.camera.edge_distances(height=height)[cloud.row, cloud.column]
         corrected = table.elevation_error(depth=depth, tangent=off_nadir(rays), edge=edge)
-        vectors = np.zeros((3, len(cloud), 3))
+        by_brightness = [
+            table.error_by_brightness(depth=depth, reflectance=each * cloud.reflectance)
+            for each in (1.0, 1.0 + BRIGHTNESS_KNOWN)
+        ]
+        vectors = np.zeros((4, len(cloud), 3))
         vectors[0, :, 2] = table.at("residual", depth)
-        vectors[1, :, 2] = WATER_KNOWN * corrected
-        vectors[2] = WATER_KNOWN * _moved(cloud, around)[0]
+        vectors[1, :, 2] = WATER_KNOWN * (corrected + by_brightness[0])
+        vectors[2, :, 2] = by_brightness[1] - by_brightness[0]
+        vectors[3] = WATER_KNOWN * _moved(cloud, around)[0]
         return vectors
 
     def _level_error(self, line: WaterLine) -> float:

@@ -15,6 +15,7 @@ from scipy.constants import speed_of_light
 from survey.cloud.echo import Echo
 from survey.cloud.georeference import pixel_rays
 from survey.cloud.points import Outcome, PixelRecord, PointClass, PointCloud
+from survey.cloud.reflectance import Calibration
 from survey.cloud.truth import TrueTargets, true_targets
 from survey.flight.pose import Frame, Pose
 from survey.optics.water import WaterColumn, petzold_water
@@ -180,6 +181,16 @@ class Look:
     water: WaterColumn
     rays: FloatArray
     targets: TrueTargets
+
+    @property
+    def calibration(self) -> Calibration:
+        """Of light that nothing takes away."""
+        return Calibration(
+            launched=1e8,
+            refractive_index=self.water.refractive_index,
+            path=np.array([0.0, 100.0]),
+            kept=np.ones(2),
+        )
 
     @staticmethod
     def echo(time: FloatArray) -> Echo:

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from survey.adjustment import adjust_run, pooled_rms, write_adjustment
+from survey.adjustment import _adjusted, adjust_run, pooled_rms, write_adjustment
 from survey.adjustment_report import as_json, as_text
 from survey.adjustment_truth import true_mounting
 from survey.errors import UserError
 from survey.exit_status import BAD_INPUT, FILE_MISSING, explain
 from survey.flight.navigation import Mounting, Navigation
 from survey.mission import fly
+from survey.optics.water import WaterColumn, petzold_water
+from survey.products.frame_file import FrameResult
 from survey.scenario.load import load_scenario
 
 
@@ -53,6 +56,32 @@ def test_true_mounting_is_the_turn_and_arm_that_is_missing() -> None:
     assert plain.lever_arm == true.lever_arm
     known = true_mounting(Navigation(mounting=true, believed_mounting=true))
     assert (known.roll, known.pitch, known.heading) == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)
+
+
+def test_candidates_go_where_bottoms_go(small_survey: Any) -> None:
+    """Weak echoes that other frames may believe are placed anew with the rest of their frame."""
+    cloud = small_survey.bottom.select(small_survey.bottom.frame == 3)
+    weak = np.arange(0, len(cloud), 7)
+    result = FrameResult(
+        bottom=cloud,
+        surface=small_survey.surface.select(small_survey.surface.frame == 3),
+        record=small_survey.records[3],
+        candidates=cloud.select(weak),
+    )
+    lines = np.unique(cloud.line).tolist()
+    found: Any = SimpleNamespace(
+        unknowns=SimpleNamespace(lines=lines),
+        offset=lambda line: np.array([2.0, -1.0, 0.5]),
+        mounting=Mounting(roll=0.01),
+    )
+    frames = {frame.index: frame for frame in small_survey.frames}
+    water = WaterColumn.uniform(petzold_water("coastal", refractive_index=1.34, group_index=1.36))
+    told = _adjusted(result, found, frames, small_survey, water)
+    assert told.candidates is not None
+    for name in ("position", "true_elevation", "depth"):
+        new, old = getattr(told.bottom, name), getattr(cloud, name)
+        assert np.nanmax(np.abs(new - old)) > 0.1, name
+        assert getattr(told.candidates, name) == pytest.approx(new[weak], nan_ok=True), name
 
 
 def test_pooled_differences_weigh_by_cells() -> None:

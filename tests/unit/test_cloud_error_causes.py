@@ -58,6 +58,7 @@ def points_of(
         seabed=look.seabed,
         group_index=1.36,
         scattering=scattering,
+        calibration=look.calibration,
     )
     around = Surroundings(
         frame=frame,

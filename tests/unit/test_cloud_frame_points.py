@@ -44,6 +44,7 @@ def bottom_of(look: Any, bottom_time: FloatArray, first_time: FloatArray) -> Poi
         seabed=look.seabed,
         group_index=look.water.group_index,
         scattering=Scattering.none(),
+        calibration=look.calibration,
     )
 
 

@@ -38,6 +38,7 @@ def points_of(look: Any, first_time: Any, bottom_time: Any) -> tuple[PointCloud,
         seabed=look.seabed,
         group_index=look.water.group_index,
         scattering=Scattering.none(),
+        calibration=look.calibration,
     )
     return surface_points(**seen, targets=look.targets), bottom
 

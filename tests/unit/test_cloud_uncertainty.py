@@ -183,26 +183,37 @@ def test_a_table_takes_off_what_it_was_made_of() -> None:
     tangent = chance.uniform(0.0, 0.28, 2000)
     along = tangent * chance.uniform(-1.0, 1.0, 2000)
     edge = chance.uniform(0.0, 20.0, (2000, 2))
+    brightness = chance.uniform(0.0, 2.0, 2000)
 
     def bottom(depth: float) -> LevelBottom:
         rim = 0.01 * depth * np.exp(-4.0 * edge / depth).sum(axis=-1)
+        error = -0.02 * depth + 0.05 * depth * tangent**2 + rim + chance.normal(0.0, 0.01, 2000)
+        seen = np.where(brightness > 0.1, brightness, np.nan)
         return LevelBottom(
             depth=depth,
             tangent=tangent,
-            error=-0.02 * depth + 0.05 * depth * tangent**2 + rim + chance.normal(0.0, 0.01, 2000),
+            error=error,
             edge=edge,
             along=along,
             origin=-0.04 * depth * along + chance.normal(0.0, 0.05, 2000),
             surface_late=1e-9 * tangent,
+            brightness=brightness,
+            second_error=error - 0.01 * depth * (1.0 - 1.0 / seen),
         )
 
     table = Scattering.fitted([bottom(depth) for depth in (2.0, 4.0, 8.0)])
-    assert table.shift[1] == pytest.approx(0.16, abs=0.03)
+    assert table.shift == pytest.approx(0.04 * np.array([0.0, 2.0, 4.0, 8.0]), abs=0.03)
+    assert table.bias_bright == pytest.approx(-0.01 * np.array([2.0, 2.0, 4.0, 8.0]), rel=1e-6)
     assert table.residual == pytest.approx(0.01, rel=0.1)
     rays = np.array([0.2, 0.0, -1.0])
     error = -0.02 * 6.0 + 0.05 * 6.0 * 0.04 + 0.01 * 6.0 * (1.0 + np.exp(-1.0))
+    faint = -0.01 * 6.0 * (1.0 - 0.15 / 0.1)
     fixed = table.corrected(
-        np.array([40.0, 0.0, -6.0 + error]), rays=rays, edge=np.array([0.0, 1.5]), level=0.0
+        np.array([40.0, 0.0, -6.0 + error + faint]),
+        rays=rays,
+        edge=np.array([0.0, 1.5]),
+        level=0.0,
+        reflectance=lambda depth: np.full_like(depth, 0.1),
     )
     assert fixed[2] == pytest.approx(-6.0, abs=0.005)
     assert fixed[0] == pytest.approx(40.0 - 0.2 * 0.04 * 6.0, abs=0.01)

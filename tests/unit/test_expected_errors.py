@@ -1,4 +1,4 @@
-"""Level bottoms whose echoes are made: of which echoes a table is made, and how deep it reaches."""
+"""Level bottoms: of which echoes a table is made, how deep it reaches, what brightness does."""
 
 from __future__ import annotations
 
@@ -14,6 +14,9 @@ from survey.cloud.bottom_search import ThresholdSearch
 from survey.cloud.noise import NoiseModel, RangingSettings
 from survey.expected_errors import LevelBottoms
 from survey.flight.pose import Frame, Pose
+from survey.mission import fly_frame
+from survey.preparation import prepare
+from survey.scenario.load import load_scenario
 from survey.sensor.camera import Camera
 from survey.sensor.ideal import IdealCounter
 from survey.transport.waveforms import Waveforms, pulse_taps
@@ -103,3 +106,28 @@ def test_a_table_is_made_of_light_that_touched_the_bottom_once(deepest: float) -
 
 def test_water_without_any_bottom_echo_has_no_table() -> None:
     assert level_bottoms(0.5).expected_errors().depth.tolist() == [0.0]
+
+
+@pytest.mark.parametrize("reflectance", [0.05, 0.4])
+def test_bright_and_dark_beds_lie_at_the_same_depth(reflectance: float) -> None:
+    """Harbor water, where an uneven bed is 0.05 m off if its brightness is not heeded."""
+    scenario = load_scenario("paper-p07").replace(
+        {
+            "camera.rows": 8,
+            "camera.columns": 16,
+            "laser.pulse_energy_j": 1.0 / 16.0,
+            "receiver.bins": 220,
+            "flight.frames_per_line": 1,
+            "transport.walks_per_pixel": 512,
+            "seabed": {"kind": "plane", "depth_m": 3.0, "reflectance": reflectance},
+        }
+    )
+    mission = prepare(scenario)
+    cloud = fly_frame(mission, mission.frames[0]).bottom
+    error = cloud.position[:, 2] - cloud.true_elevation
+    unheeded = mission.scattering().error_by_brightness(
+        depth=np.array(3.0), reflectance=np.array(reflectance)
+    )
+    assert abs(unheeded) > 0.02
+    assert error.mean() == pytest.approx(0.0, abs=0.01)
+    assert np.mean(np.abs(error) <= cloud.tvu) > 0.9

@@ -238,6 +238,7 @@ def georeferenced(look: Any, navigation: Navigation) -> PointCloud:
         seabed=look.seabed,
         group_index=look.water.group_index,
         scattering=Scattering.none(),
+        calibration=look.calibration,
     )
 
 
