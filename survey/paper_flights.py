@@ -37,7 +37,7 @@ SEAS: Mapping[str, dict[str, Any]] = {
             "depth_m": instrument.BOTTOM_DEPTH,
             "reflectance": instrument.BOTTOM_REFLECTANCE,
         },
-        "flight.frames_per_line": 4,  # all look upon the same
+        "flight.frames_per_line": 2,  # all look upon the same
     },
 }
 HIDDEN = 0.01

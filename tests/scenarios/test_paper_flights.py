@@ -17,6 +17,7 @@ LIMITS = {
     "P07": {"day": 22.1, "night": 23.4},
 }
 SEEN_AT_50_M = "p02-flat-night"
+BIN = 0.5  # of the depths that a stitched cloud reaches, in whole ones [m]
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +36,8 @@ def test_the_stitched_bottom_ends_at_the_threshold_s_depth(
 ) -> None:
     """Within 4 % or a bin of depth; the Monte Carlo error lets harbor water not near the ratio."""
     row = flown[f"{water}-slope-{sun}"]
-    assert row["stitched_depth_m"] == pytest.approx(row["run_depth_m"], rel=0.04, abs=0.5)
+    whole_bins = BIN * (row["run_depth_m"] // BIN)
+    assert row["stitched_depth_m"] == pytest.approx(whole_bins, rel=0.04, abs=BIN)
     assert (0.88 if water != "p07" else 0.3) < row["stitched_depth_m"] / row["snr_depth_m"] < 1.0
 
 
