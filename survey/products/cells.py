@@ -97,6 +97,21 @@ class CellGrid:
         rows = slice(max(row, 0), max(min(row + other.rows, self.rows), 0))
         return rows, slice(max(column, 0), max(min(column + other.columns, self.columns), 0))
 
+    def window_over(self, on_map: FloatArray, *, margin: float) -> tuple[slice, slice]:
+        """Return rows and columns of the cells around places (n, 2), with a margin [m].
+
+        Examples
+        --------
+        >>> cells = CellGrid(west=0.0, north=40.0, cell_size=4.0, rows=10, columns=10)
+        >>> cells.window_over(np.array([[-8.0, 21.0], [3.0, 27.0]]), margin=2.0)
+        (slice(2, 6, None), slice(0, 2, None))
+        """
+        west, south = on_map.min(axis=0) - margin
+        east, north = on_map.max(axis=0) + margin
+        rows = np.array([self.north - north, self.north - south]) / self.cell_size
+        columns = np.array([west - self.west, east - self.west]) / self.cell_size
+        return _whole(rows, self.rows), _whole(columns, self.columns)
+
     def part(self, window: tuple[slice, slice]) -> CellGrid:
         """Return the cells of a window as a raster of its own."""
         rows, columns = window
@@ -129,9 +144,18 @@ class CellGrid:
 
     def centres_of(self, index: NDArray[np.intp]) -> FloatArray:
         """Return the centres of the cells that flat indices name (n, 2) [m]."""
-        row, column = np.divmod(index, self.columns)
+        return self.centres_at(*np.divmod(index, self.columns))
+
+    def centres_at(self, row: NDArray[np.intp], column: NDArray[np.intp]) -> FloatArray:
+        """Return the centres of cells by rows and columns (n, 2) [m]."""
         x = self.west + (column + 0.5) * self.cell_size
         return np.stack([x, self.north - (row + 0.5) * self.cell_size], axis=-1)
+
+
+def _whole(edges: FloatArray, number: int) -> slice:
+    """Return the cells that lie between two edges, in whole or in part."""
+    first, last = np.clip([np.floor(edges[0]), np.ceil(edges[1])], 0, number)
+    return slice(int(first), int(last))
 
 
 def inside_ring(cells: CellGrid, ring: FloatArray) -> NDArray[np.bool_]:

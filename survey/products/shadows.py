@@ -50,28 +50,27 @@ def with_shadows(
     refractive_index : float
         Of the water [1].
     """
-    gaps = coverage.state == GAP
-    if not gaps.any():
-        return coverage
-    centres = coverage.cells.centres()[gaps] - seabed.map_frame.origin[:2]
-    places = np.column_stack([centres, seabed.elevation_at(centres[:, 0], centres[:, 1])])
-    known = np.isfinite(places[:, 2])
-    in_view, seen = np.zeros((2, len(places)), np.bool_)
+    gaps, origin = coverage.state == GAP, seabed.map_frame.origin[:2]
+    in_view, seen = np.zeros((2, *gaps.shape), np.bool_)
+    room = max(level - seabed.grid.z_low, seabed.grid.z_high - level)
+    water = {"level": level, "refractive_index": refractive_index}
     for frame in frames:
-        sensor = frame.pose.position
-        outline = _outline(footprint(camera, frame.pose, level))
-        near = np.flatnonzero(known & ~seen & _may_be_in(outline, places, level - places[:, 2]))
-        if near.size == 0:
+        corners, sensor = footprint(camera, frame.pose, level), frame.pose.position
+        window = coverage.cells.window_over(corners + origin, margin=room)
+        row, column = np.nonzero(gaps[window] & ~seen[window])
+        if row.size == 0:
             continue
-        water = {"level": level, "refractive_index": refractive_index}
+        centres = coverage.cells.part(window).centres_at(row, column) - origin
+        places = np.column_stack([centres, seabed.elevation_at(*centres.T)])
+        outline = _outline(corners)
+        near = np.isfinite(places[:, 2]) & _may_be_in(outline, places, level - places[:, 2])
         entry = entry_points(places[near], sensor=sensor, **water)
-        near = near[outline.contains_points(entry[:, :2])]
-        hidden = is_hidden(places[near], sensor=sensor, seabed=seabed, **water)
-        in_view[near] = True
-        seen[near[~hidden]] = True
-    state = coverage.state.copy()
-    state[gaps] = np.where(in_view & ~seen, SHADOW, GAP)
-    return replace(coverage, state=state)
+        viewed = np.flatnonzero(near)[outline.contains_points(entry[:, :2])]
+        hidden = is_hidden(places[viewed], sensor=sensor, seabed=seabed, **water)
+        in_view[window][row[viewed], column[viewed]] = True
+        seen[window][row[viewed[~hidden]], column[viewed[~hidden]]] = True
+    state = np.where(in_view & ~seen, SHADOW, coverage.state)
+    return replace(coverage, state=state.astype(coverage.state.dtype))
 
 
 def _outline(corners: FloatArray) -> Outline:

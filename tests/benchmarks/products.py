@@ -64,7 +64,7 @@ class FormulaSeabed:
         return np.asarray(-11.0 + 6.0 * np.sin(x / 900.0) + 2.0 * np.sin(y / 70.0))
 
 
-FAR_BELOW = trimesh.creation.box(bounds=[[-1.0, -1.0, -900.0], [1.0, 1.0, -899.0]])
+FAR_BELOW = trimesh.creation.box(bounds=[[-1.0, -1.0, -30.0], [1.0, 1.0, -29.0]])
 SEABED = FormulaSeabed(
     grid=build_grid(FAR_BELOW),
     map_frame=MapFrame(easting=5e5, northing=6e6, epsg=25832, vertical_epsg=5714),
