@@ -165,7 +165,9 @@ class Scattering:
     ) -> FloatArray:
         """Return what is added to the error over a bottom of another reflectance [m].
 
-        A quarter of the table's stands for all fainter ones, and for what is not known.
+        A quarter of the table's stands for all fainter ones, and for what is not known. Departure:
+        counts tell a bottom too faint by the light of the water it hides, and too much is taken off
+        dark ones: in harbor water at 3 m 0.118 m for 0.084 m at 0.05, 0.030 m for 0.021 m at 0.1.
 
         Examples
         --------

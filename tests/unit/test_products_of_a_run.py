@@ -72,7 +72,10 @@ def settings(survey: Any) -> ProductSettings:
 def write(folder: Path, survey: Any, results: dict[int, FrameResult], **more: Any) -> Path:
     folder.mkdir()
     seabed: Any = SimpleNamespace(
-        map_frame=survey.map_frame, elevation_at=survey.elevation_at, substrate_names={1: "sand"}
+        map_frame=survey.map_frame,
+        elevation_at=survey.elevation_at,
+        substrate_names={1: "sand"},
+        grid=SimpleNamespace(z_low=-20.0, z_high=5.0),
     )
     write_products(
         folder,
