@@ -410,7 +410,7 @@ def paper(
     threads: Annotated[int, typer.Option(min=0, help="Threads; 0 is one for each core.")] = 0,
     flights: Annotated[
         bool,
-        typer.Option("--flights", help="Also fly its missions into DIR/flights: 15 minutes."),
+        typer.Option("--flights", help="Also fly its missions into DIR/flights: 20 minutes."),
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, not a table.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing but errors.")] = False,

@@ -209,17 +209,14 @@ def bottom_points(
     """
     found = bottom.found
     refracted = place_in_water(path=line.path, time=bottom.time, group_index=group_index)
-    edge = camera.edge_distances(height=frame.measured.position[2] - line.level)
+    height = frame.measured.position[2] - line.level
     corrected = scattering.corrected(
         refracted,
         rays=rays,
-        edge=edge,
+        edge=camera.edge_distances(height=height),
         level=line.level,
         reflectance=partial(
-            calibration.reflectance,
-            bottom.counts,
-            slant=-1.0 / rays[..., 2],
-            height=frame.measured.position[2] - line.level,
+            calibration.reflectance, bottom.counts, slant=-1.0 / rays[..., 2], height=height
         ),
     )
     straight = place_in_air(position=frame.measured.position, rays=rays, time=bottom.time)

@@ -167,7 +167,7 @@ class Scattering:
 
         A quarter of the table's stands for all fainter ones, and for what is not known. Departure:
         counts tell a bottom too faint by the light of the water it hides, and too much is taken off
-        dark ones: in harbor water at 3 m 0.118 m for 0.084 m at 0.05, 0.030 m for 0.021 m at 0.1.
+        dark ones: in harbor water at 3 m 0.125 m for 0.084 m at 0.05, 0.032 m for 0.021 m at 0.1.
 
         Examples
         --------

@@ -117,8 +117,7 @@ def _products() -> dict[str, Any]:
 
 
 def _sized(frames: int) -> Scenario:
-    changes = {"water.type": "coastal", "flight.frames_per_line": frames}
-    return _scenario("coastal", SIZED_DEPTH, **changes)
+    return _scenario("coastal", SIZED_DEPTH, **{"flight.frames_per_line": frames})
 
 
 def _written(frames: int, folder: Path) -> float:
