@@ -106,8 +106,8 @@ class LevelBottoms:
             level=self.level,
             refractive_index=engine.water.refractive_index,
         )
-        late, measured = self._measured(engine, light, path, depth)
-        _, second = self._measured(engine, uneven, path, depth)
+        late, measured, counts = self._measured(engine, light, path, depth)
+        _, second, more = self._measured(engine, uneven, path, depth)
         found = np.isfinite(measured) & np.isfinite(late)
         if found.mean() < ENOUGH or found.sum() < FEWEST:
             return None
@@ -127,6 +127,7 @@ class LevelBottoms:
             surface_late=late[found],
             brightness=brightness[found],
             second_error=second[found] - (self.level - depth),
+            told=(more / counts)[found],
         )
 
     def _even_bed(self, depth: float) -> Seabed:
@@ -147,10 +148,11 @@ class LevelBottoms:
 
     def _measured(
         self, engine: Engine, light: Waveforms, path: WaterPath, depth: float
-    ) -> tuple[FloatArray, FloatArray]:
-        """Return lateness of the surface [s] and elevation of the bottom [m] by the mean readings.
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return lateness of the surface [s], elevation [m] and counts of the bottom.
 
-        The bottom's is told from water at its true level, and from light that touched it once.
+        By the mean readings. The bottom's is told from water at its true level, and from light that
+        touched it once.
         """
         noise = self.noise
         end = self._end_of_first_bounce(path, depth, engine.water.group_index)
@@ -166,7 +168,7 @@ class LevelBottoms:
         )
         bottom = search.echo(counts)
         place = place_in_water(path=path, time=bottom.time, group_index=engine.water.group_index)
-        return first.time - path.air_time, place[..., 2]
+        return first.time - path.air_time, place[..., 2], bottom.counts
 
     def _end_of_first_bounce(self, path: WaterPath, depth: float, group_index: float) -> FloatArray:
         """Return until when light comes that touched the bottom once (rows, columns) [s]."""

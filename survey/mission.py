@@ -153,7 +153,7 @@ def _judged(
     bed: PointCloud | None = None,
 ) -> PointCloud:
     """Return points with their uncertainties, reflectance and true causes of error."""
-    bright = mission.calibration.applied(cloud, frame=around.frame)
+    bright = mission.calibration.applied(cloud, frame=around.frame, scattering=around.scattering)
     told = mission.budget.applied(bright, around, bed=bed)
     return with_causes(
         told,

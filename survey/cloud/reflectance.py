@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from survey.cloud.noise import NoiseModel, gate_sums
 from survey.cloud.points import NOISE_CLASSES, PointClass, PointCloud
+from survey.cloud.scattering import Scattering
 from survey.flight.pose import Frame
 from survey.optics.interface import fresnel_reflectance
 from survey.transport.expected_light import ExpectedLight
@@ -87,15 +88,19 @@ class Calibration:
             kept=np.array(kept),
         )
 
-    def applied(self, cloud: PointCloud, *, frame: Frame) -> PointCloud:
-        """Return the points of a frame with their reflectance, nan where there is no echo."""
+    def applied(self, cloud: PointCloud, *, frame: Frame, scattering: Scattering) -> PointCloud:
+        """Return the points of a frame with their reflectance, nan where there is no echo.
+
+        What the counts miss for the water that a bottom hides is added as ``scattering`` tells.
+        """
         ray = cloud.uncorrected - frame.measured.position
-        reflectance = self.reflectance(
+        told = self.reflectance(
             cloud.counts,
             slant=np.linalg.norm(ray, axis=1) / -ray[:, 2],
             height=frame.measured.position[2] - cloud.position[:, 2] - cloud.depth,
             depth=cloud.depth,
         )
+        reflectance = scattering.reflectance(told, depth=cloud.depth)
         echo = ~np.isin(cloud.classification, NO_ECHO)
         return replace(cloud, reflectance=np.where(echo, reflectance, np.nan).astype(np.float32))
 

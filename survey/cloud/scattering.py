@@ -51,6 +51,8 @@ class LevelBottom:
         Of a second bottom there, whose reflectance is uneven, over that of this one [1].
     second_error : array (n,)
         The error over that one [m]; nan where it shows no echo.
+    told : array (n,)
+        Counts of that one's echo over those of this one's [1].
     """
 
     depth: float
@@ -62,6 +64,7 @@ class LevelBottom:
     surface_late: FloatArray
     brightness: FloatArray
     second_error: FloatArray
+    told: FloatArray
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,7 +73,7 @@ class Scattering:
 
     The water under a bottom sends nothing back, but what is taken off the counts holds its light:
     an echo seems the earlier, the fainter it is beside that light. Hence an error in proportion to
-    1 / reflectance.
+    1 / reflectance, and counts that tell every bottom darker by the same.
 
     Parameters
     ----------
@@ -85,6 +88,8 @@ class Scattering:
     bias_bright : array
         What is added over a bottom so bright that the light of the water it hides does not count
         [m]; over one of reflectance r it is 1 - TABLE_REFLECTANCE / r of that.
+    hidden : array
+        Reflectance that the counts of a bottom miss, for the light of the water it hides [1].
     shift : array
         How much nearer to nadir light was reflected than the pixel's centre looks, over the
         tangent [m].
@@ -111,6 +116,7 @@ class Scattering:
     bias_slant: FloatArray
     bias_rim: FloatArray
     bias_bright: FloatArray
+    hidden: FloatArray
     shift: FloatArray
     residual: FloatArray
     surface_tangent: FloatArray
@@ -165,9 +171,7 @@ class Scattering:
     ) -> FloatArray:
         """Return what is added to the error over a bottom of another reflectance [m].
 
-        A quarter of the table's stands for all fainter ones, and for what is not known. Departure:
-        counts tell a bottom too faint by the light of the water it hides, and too much is taken off
-        dark ones: in harbor water at 3 m 0.125 m for 0.084 m at 0.05, 0.032 m for 0.021 m at 0.1.
+        A quarter of the table's stands for all fainter ones, and for what is not known.
 
         Examples
         --------
@@ -178,6 +182,19 @@ class Scattering:
         """
         brightness = np.fmax(reflectance / TABLE_REFLECTANCE, FAINTEST)
         return np.asarray(self.at("bias_bright", depth) * (1.0 - 1.0 / brightness))
+
+    def reflectance(self, told: NDArray[np.floating], *, depth: FloatArray) -> NDArray[np.floating]:
+        """Return the reflectances of what counts tell to be darker, at measured depths [1].
+
+        Land, at depth 0, hides no water.
+
+        Examples
+        --------
+        >>> table = replace(Scattering.none(), hidden=np.array([0.01]))
+        >>> table.reflectance(np.array([0.09, 0.3]), depth=np.array([3.0, 0.0])).round(3).tolist()
+        [0.1, 0.3]
+        """
+        return told + np.where(depth > 0.0, self.at("hidden", depth), 0.0)
 
     def on_time(self, first: Echo, rays: FloatArray) -> Echo:
         """Return first echoes as early as the water is, along rays (rows, columns, 3) in air."""
@@ -221,7 +238,7 @@ class Scattering:
         error = np.empty_like(position)
         error[..., :2] = self.at("shift", depth)[..., None] * tangents
         error[..., 2] = self.elevation_error(depth=depth, tangent=off_nadir(rays), edge=edge)
-        told = reflectance(depth=depth + error[..., 2])
+        told = self.reflectance(reflectance(depth=depth + error[..., 2]), depth=depth)
         error[..., 2] += self.error_by_brightness(depth=depth, reflectance=told)
         return np.asarray(position - error)
 
@@ -265,6 +282,7 @@ def _fit(bottom: LevelBottom) -> dict[str, float]:
         "bias_slant": float(slant),
         "bias_rim": float(rim),
         "bias_bright": _bright(bottom),
+        "hidden": _hidden(bottom),
         "shift": -float((bottom.along @ bottom.origin) / (bottom.along @ bottom.along)),
         "residual": float((error - terms @ [bias, slant, rim]).std()),
     }
@@ -272,10 +290,25 @@ def _fit(bottom: LevelBottom) -> dict[str, float]:
 
 def _bright(bottom: LevelBottom) -> float:
     """Return what is added to the error over a bottom of endless brightness [m]."""
-    told = np.isfinite(bottom.second_error) & (bottom.brightness >= FAINTEST)
+    return _slope(1.0 - 1.0 / bottom.brightness, bottom.second_error - bottom.error, bottom)
+
+
+def _hidden(bottom: LevelBottom) -> float:
+    """Return the reflectance that the counts miss [1].
+
+    Counts that miss a share h of the table's bottom grow from 1 - h to g - h over one g times as
+    bright. A detector that saturates tells no share.
+    """
+    growth = _slope(bottom.brightness - 1.0, bottom.told - 1.0, bottom)
+    return TABLE_REFLECTANCE * max(0.0, 1.0 - 1.0 / growth) if growth > 0.0 else 0.0
+
+
+def _slope(more: FloatArray, change: FloatArray, bottom: LevelBottom) -> float:
+    """Return what changes in proportion to what is more over the second bottom; 0 if untold."""
+    told = np.isfinite(change) & (bottom.brightness >= FAINTEST)
     if not told.any():
         return 0.0
-    change, more = (bottom.second_error - bottom.error)[told], 1.0 - 1.0 / bottom.brightness[told]
+    more, change = more[told], change[told]
     kept = _usual(change)
     return float(np.linalg.lstsq(more[kept, None], change[kept])[0][0])
 

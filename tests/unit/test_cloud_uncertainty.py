@@ -199,11 +199,13 @@ def test_a_table_takes_off_what_it_was_made_of() -> None:
             surface_late=1e-9 * tangent,
             brightness=brightness,
             second_error=error - 0.01 * depth * (1.0 - 1.0 / seen),
+            told=(seen - 0.1) / (1.0 - 0.1),
         )
 
     table = Scattering.fitted([bottom(depth) for depth in (2.0, 4.0, 8.0)])
     assert table.shift == pytest.approx(0.04 * np.array([0.0, 2.0, 4.0, 8.0]), abs=0.03)
     assert table.bias_bright == pytest.approx(-0.01 * np.array([2.0, 2.0, 4.0, 8.0]), rel=1e-6)
+    assert table.hidden == pytest.approx(0.1 * 0.15, rel=1e-6)
     assert table.residual == pytest.approx(0.01, rel=0.1)
     rays = np.array([0.2, 0.0, -1.0])
     error = -0.02 * 6.0 + 0.05 * 6.0 * 0.04 + 0.01 * 6.0 * (1.0 + np.exp(-1.0))
@@ -213,7 +215,7 @@ def test_a_table_takes_off_what_it_was_made_of() -> None:
         rays=rays,
         edge=np.array([0.0, 1.5]),
         level=0.0,
-        reflectance=lambda depth: np.full_like(depth, 0.1),
+        reflectance=lambda depth: np.full_like(depth, 0.1 - 0.1 * 0.15),
     )
     assert fixed[2] == pytest.approx(-6.0, abs=0.005)
     assert fixed[0] == pytest.approx(40.0 - 0.2 * 0.04 * 6.0, abs=0.01)
