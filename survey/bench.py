@@ -36,13 +36,15 @@ class Case:
     """A water, a depth, and the work that gives about 5 % error a pixel.
 
     Where the bottom takes many walks, fewer points light the column: its error is then that of the
-    other cases. ``surface`` holds further keys of that section.
+    other cases. Light that scatters often goes along more ``tracks`` in a replicate. ``surface``
+    holds further keys of that section.
     """
 
     water: str
     depth_m: float
     walks_per_pixel: int
     column_spacing: float = 1.0
+    tracks: int = 1024
     surface: dict[str, Any] = field(default_factory=dict)
 
 
@@ -52,13 +54,13 @@ WIND_WAVES = {
     "waves": {"spectrum": "jonswap", "fetch_km": 20.0},
 }
 CASES = {
-    "clear 20 m": Case(water="clear", depth_m=20.0, walks_per_pixel=36),
-    "coastal 10 m": Case(water="coastal", depth_m=10.0, walks_per_pixel=36),
+    "clear 20 m": Case(water="clear", depth_m=20.0, walks_per_pixel=20),
+    "coastal 10 m": Case(water="coastal", depth_m=10.0, walks_per_pixel=20),
     "coastal 10 m, waves": Case(
         water="coastal", depth_m=10.0, walks_per_pixel=144, surface=WIND_WAVES
     ),
-    "coastal 20 m": Case(water="coastal", depth_m=20.0, walks_per_pixel=80, column_spacing=2.5),
-    "harbor 4 m": Case(water="harbor", depth_m=4.0, walks_per_pixel=88),
+    "coastal 20 m": Case(water="coastal", depth_m=20.0, walks_per_pixel=56, column_spacing=2.5),
+    "harbor 4 m": Case(water="harbor", depth_m=4.0, walks_per_pixel=56, tracks=2048),
 }
 
 
@@ -185,6 +187,7 @@ def bench_scenario(case: Case, **values: Any) -> Scenario:
         },
         "transport": {
             "walks_per_pixel": case.walks_per_pixel,
+            "tracks_per_replicate": case.tracks,
             "column_spacing": case.column_spacing,
         },
     }

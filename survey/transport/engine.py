@@ -47,6 +47,8 @@ FloatArray = NDArray[np.float64]
 
 COARSE_SHARE = 0.4
 AZIMUTHS = 256
+EARLY = 0.5
+"""Delay of what still counts as early on one of its ways, in widths of the pulse [1]."""
 FEWEST_LEGS, MOST_LEGS = 6, 24
 LEGS_PER_SCATTERING, LEGS_BESIDE = 3, 64
 TO_A_MILLIMETRE = 3
@@ -144,7 +146,8 @@ class Engine:
         scatterings = 2.0 * float(self.water.scattered(scene.bounds.depth))
         tracks = draw_tracks(
             self._layers, 2 * settings.replicates, settings.tracks_per_replicate,
-            FEWEST_LEGS + int(min(MOST_LEGS, scatterings)), scene.bounds.depth, *address,
+            FEWEST_LEGS + int(min(MOST_LEGS, scatterings)), scene.bounds.depth, self._detour,
+            *address,
         )  # fmt: skip
         deviation, rims = deviations(scene, optics, strays(tracks), self._method.isolated)
         walks = walks_of_pixels(deviation, mean=settings.walks_per_replicate)
@@ -171,6 +174,11 @@ class Engine:
     @property
     def _deepest_in_gate(self) -> float:
         return 0.5 * self.receiver.bins * self.receiver.bin_width * self._layers.speed
+
+    @property
+    def _detour(self) -> float:
+        """Return what early light may go farther than straight light on one of its ways [m]."""
+        return EARLY * self.laser.pulse_fwhm * self._layers.speed
 
     def _column_spacing(self) -> float:
         """Return the scatterings between points of a track: attenuation lengths, times b / c."""

@@ -37,9 +37,12 @@ from survey.transport.surface import (
 from survey.transport.tally import BOTTOM, Tally, deposit, note_leg
 from survey.transport.tracks import (
     Course,
+    Frame,
     Tracks,
     direction_along,
     frame_around,
+    frame_straying,
+    frame_uphill,
     mirrored,
 )
 from terrain.kernels import inlined_fused_kernel
@@ -136,8 +139,9 @@ def send_light(
 ) -> None:
     """Send a track down from the surface, and light the place of the bottom and the column.
 
-    It is laid with the azimuth ``turn``, where another is not more likely to bring light. A place
-    with gain 0 counts as no bottom: light is sent towards it for the column alone.
+    Where it has to be aimed, it is laid to stray to the azimuth ``turn``, unless another is more
+    likely to bring light. A place with gain 0 counts as no bottom: light is sent towards it for the
+    column alone.
     """
     sea = scene.sea
     target = sea.level - place.z
@@ -146,7 +150,8 @@ def send_light(
     dz = sea.level - optics.position[2]
     norm = 1.0 / math.sqrt(dx * dx + dy * dy + dz * dz)
     facet = Facet(0.0, 0.0, 1.0)
-    if scene.wavy or (sight.rim and place.gain > 0.0):
+    at_will = scene.wavy or (sight.rim and place.gain > 0.0)
+    if at_will:
         turn, facet, odds = aimed(
             scene, layers, optics, method, tracks, sight, ray, target, -dz * norm, way, turn,
             state,
@@ -160,11 +165,16 @@ def send_light(
     )
     if caught <= 0.0 or dz >= 0.0:
         return
+    if at_will:
+        which = 2 * sight.batch
+        frame = frame_straying(tracks, which, way.track, dx, dy, dz, method.circle, turn)
+    else:
+        frame = frame_uphill(dx, dy, dz)
     strength = weight * caught * (1.0 - reflectance) * passing(sea)
     start = uniform(state)
     legs = follow(
-        scene, layers, optics, method, tracks, tally, sight, place, ray, facet, way, turn, strength,
-        dx, dy, dz, state,
+        scene, layers, optics, method, tracks, tally, sight, place, ray, facet, way, frame,
+        strength, dx, dy, dz, state,
     )  # fmt: skip
     if with_column:
         light_column(scene, layers, optics, method, tally, sight, ray, facet, legs, start, state)
@@ -183,7 +193,7 @@ def follow(
     ray: Ray,
     facet: Facet,
     way: Course,
-    turn: float,
+    frame: Frame,
     strength: float,
     dx: float,
     dy: float,
@@ -196,7 +206,6 @@ def follow(
     """
     sea = scene.sea
     target = sea.level - place.z
-    frame = frame_around(dx, dy, dz, method.circle, turn)
     which, k, turning, legs = 2 * sight.batch, 0, False, 0
     x = y = depth = path = absorbed = scattered = deepest = turns = 0.0
     limit = longest_path(scene, layers, optics, sight)

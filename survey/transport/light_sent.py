@@ -45,7 +45,8 @@ class Sight(NamedTuple):
     """A walk from a pixel as it enters the water.
 
     ``importance`` is its share of the pixel's etendue behind the surface [m2 sr]; light to a pixel
-    at the ``rim`` of what is lit may begin in the dark.
+    at the ``rim`` of what is lit may begin in the dark. Tracks are taken in the order for the
+    ``tilt`` at which the pixel looks down.
     """
 
     pixel: int
@@ -53,6 +54,7 @@ class Sight(NamedTuple):
     time: float
     importance: float
     rim: bool
+    tilt: int
 
 
 class Facet(NamedTuple):

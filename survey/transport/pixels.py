@@ -12,7 +12,7 @@ from scipy.constants import speed_of_light
 from survey.optics.interface import fresnel_reflectance, reflected
 from survey.transport.beam import light_on_water
 from survey.transport.directions import lambert_direction
-from survey.transport.launch import Optics, direction_of, fraction, tangents_at
+from survey.transport.launch import Optics, direction_of, tangents_at
 from survey.transport.layers import Layers, crossed, free_path, wide_turn
 from survey.transport.light_paths import (
     ROULETTE_BELOW,
@@ -24,6 +24,7 @@ from survey.transport.light_sent import Method, Sight, longest_path
 from survey.transport.random import PIXELS, start_stream, uniform
 from survey.transport.scene import Scene
 from survey.transport.sheet import BELOW, first_water, sea_under, water_above
+from survey.transport.spread import Evenly, Shifts, shared_out, spread_evenly
 from survey.transport.surface import (
     drawn_normal,
     enter_water,
@@ -34,21 +35,20 @@ from survey.transport.surface import (
 from survey.transport.tally import BOTTOM, Tally, add_up, clear, deposit, note_leg, tell_variance
 from survey.transport.tracks import (
     Course,
+    Frame,
     Tracks,
     chosen,
     course,
     direction_along,
     frame_around,
+    frame_uphill,
     mirrored,
+    part_early,
+    tilt_of,
 )
 from terrain.kernels import fused_kernel, inlined_fused_kernel, leaf_kernel
 from terrain.raycast import first_hit
 
-# Roberts (2018): additive recurrences of low discrepancy in one and two dimensions.
-GOLDEN = 0.6180339887498949
-PLASTIC_1, PLASTIC_2 = 0.7548776662466927, 0.5698402909980532
-# Azimuths: of those tried, the two that fill squares with the others most evenly.
-TURNING_1, TURNING_2 = 0.6884467305709401, 0.8211030883946387
 BOUNCE_CHANCE = 0.25
 LIFT = 1e-7
 
@@ -93,21 +93,6 @@ class Address(NamedTuple):
     frame: int
 
 
-class Evenly(NamedTuple):
-    """Numbers from 0 to 1, each spread evenly over the walks of a pixel.
-
-    Where in the field of view a walk looks, the places of its two tracks in their sets, and the
-    azimuths by which these are turned.
-    """
-
-    in_rows: float
-    in_columns: float
-    back: float
-    down: float
-    turn_back: float
-    turn_down: float
-
-
 @leaf_kernel
 def facing_normal(
     scene: Scene, face: int, dx: float, dy: float, dz: float
@@ -129,7 +114,7 @@ def walk_back(
     tally: Tally,
     which: int,
     way: Course,
-    turn: float,
+    frame: Frame,
     start: Touch,
     limit: float,
     noting: bool,
@@ -138,11 +123,10 @@ def walk_back(
     """Follow a walk along tracks until it touches the bottom, escapes, leaves or is too late.
 
     The weight does not hold the absorption, which is told beside. Legs are noted if ``noting``.
-    The first track is laid with the azimuth ``turn``.
+    The first track is laid by the axes of ``frame``.
     """
     ledger, sea = tally.ledger, scene.sea
     _, x, y, z, dx, dy, dz, path, absorbed, weight, unabsorbed = start
-    frame = frame_around(dx, dy, dz, method.circle, turn)
     k, turning, fate, entered = 0, False, LATE, weight
     turns = scattered = 0.0
     track, optical = way.track, way.optical
@@ -254,12 +238,13 @@ def see_bottom(
     """
     limit = longest_path(scene, layers, optics, sight)
     tally.noted[0], entered, which = 0, start.weight, 2 * sight.batch
-    back, down = chosen(tracks, which + 1, evenly.back), chosen(tracks, which, evenly.down)
-    turn_back, turn_down = evenly.turn_back, evenly.turn_down
-    entry_weight, touches = back.weight, 0
+    back = chosen(tracks, which + 1, evenly.back, sight.tilt)
+    down = chosen(tracks, which, evenly.down, 0 if sight.rim or scene.wavy else sight.tilt)
+    frame = frame_uphill(start.dx, start.dy, start.dz)
+    turn, entry_weight, touches = evenly.turn, back.weight, 0
     while True:
         touch = walk_back(
-            scene, layers, method, tracks, tally, which + 1, back, turn_back, start, limit,
+            scene, layers, method, tracks, tally, which + 1, back, frame, start, limit,
             touches == 0, state,
         )  # fmt: skip
         nx, ny, nz, rho = 0.0, 0.0, 1.0, 0.0
@@ -276,7 +261,7 @@ def see_bottom(
             send_light(
                 scene, layers, optics, method, tracks, tally, sight,
                 Place(x, y, z, nx, ny, nz, touch.path, touch.absorbed, gain if part == 0 else 0.0),
-                down, turn_down, entry_weight * down.weight,
+                down, turn, entry_weight * down.weight,
                 touches == 0 and part == (1 if apart else 0), state,
             )  # fmt: skip
         if touch.face < 0:
@@ -295,8 +280,8 @@ def see_bottom(
             touch.path, touch.absorbed, touch.weight * rho / BOUNCE_CHANCE, kept / BOUNCE_CHANCE,
         )  # fmt: skip
         back = course(tracks, which + 1, int(uniform(state) * tracks.legs.shape[1]), 1.0)
-        down = chosen(tracks, which, uniform(state))
-        turn_back, turn_down = uniform(state), uniform(state)
+        frame = frame_around(dx, dy, dz, method.circle, uniform(state))
+        down, turn = chosen(tracks, which, uniform(state), 0), uniform(state)
 
 
 @inlined_fused_kernel
@@ -311,6 +296,7 @@ def see(
     batch: int,
     walks: int,
     rim: bool,
+    tilt: int,
     evenly: Evenly,
     state: NDArray[np.uint64],
 ) -> None:
@@ -318,7 +304,10 @@ def see(
 
     The etendue of a direction is aperture area x cos^4 (to boresight) x tangent-plane area.
     """
-    forward, right = tangents_at(optics, evenly.in_rows, evenly.in_columns)
+    row, column = pixel // optics.columns, pixel % optics.columns
+    forward, right = tangents_at(
+        optics, (row + evenly.in_rows) / optics.rows, (column + evenly.in_columns) / optics.columns
+    )
     dx, dy, dz, cosine = direction_of(optics, forward, right)
     ahead = aside = 1.0
     while ahead * ahead + aside * aside >= 1.0:
@@ -328,26 +317,27 @@ def see(
     x = optics.position[0] + t[0, 0] * ahead + t[0, 1] * aside
     y = optics.position[1] + t[1, 0] * ahead + t[1, 1] * aside
     z = optics.position[2] + t[2, 0] * ahead + t[2, 1] * aside
-    ledger = tally.ledger
-    ledger[LAUNCHED] += 1.0
+    ledger, stands_for = tally.ledger, evenly.weight
+    ledger[LAUNCHED] += stands_for
     if dz >= 0.0:
-        ledger[REFLECTED] += 1.0
+        ledger[REFLECTED] += stands_for
         return
     solid = 4.0 * optics.half_forward * optics.half_right / (optics.rows * optics.columns)
     importance = math.pi * optics.aperture_radius**2 * solid * cosine**4 / walks
+    importance *= stands_for
     length, slope_x, slope_y = first_water(scene, x, y, z, dx, dy, dz)
     to_land, face = math.inf, -1
     if scene.bounds.highest > scene.waves.lowest:
         to_land, face = first_hit(scene.grid, x, y, z, dx, dy, dz, length)
     if face >= 0:
         x, y, z = x + dx * to_land, y + dy * to_land, z + dz * to_land
-        sight = Sight(pixel, batch, 0.0, importance, rim)
+        sight = Sight(pixel, batch, 0.0, importance, rim, tilt)
         touch = Touch(face, x, y, z, dx, dy, dz, to_land, 0.0, 1.0, 1.0)
         see_land(scene, optics, method, tally, sight, touch)
-        ledger[REFLECTED] += 1.0
+        ledger[REFLECTED] += stands_for
         return
     if length == math.inf:
-        ledger[REFLECTED] += 1.0
+        ledger[REFLECTED] += stands_for
         return
     x, y, level = x + dx * length, y + dy * length, scene.sea.level
     mx, my, mz = drawn_normal(scene.sea, method.quantiles, state)
@@ -358,14 +348,15 @@ def see(
         mx, my, mz = tilted(mx, my, mz, slope_x, slope_y)
     dx, dy, dz, caught, reflectance = enter_water(layers.refractive_index, dx, dy, dz, mx, my, mz)
     caught *= onto
-    ledger[FACETS] += caught - 1.0
     weight = caught * (1.0 - reflectance) * passing(scene.sea)
+    importance *= weight * gain_of(layers)
+    caught, weight = caught * stands_for, weight * stands_for
+    ledger[FACETS] += caught - stands_for
     ledger[REFLECTED] += caught - weight
     if weight <= 0.0 or dz >= 0.0:
         ledger[ESCAPED] += weight
         return
-    importance *= weight * gain_of(layers)
-    sight = Sight(pixel, batch, length / speed_of_light, importance, rim)
+    sight = Sight(pixel, batch, length / speed_of_light, importance, rim, tilt)
     start = Touch(-1, x, y, level, dx, dy, dz, 0.0, 0.0, weight, weight)
     see_bottom(scene, layers, optics, method, tracks, tally, sight, start, evenly, state)
 
@@ -397,24 +388,20 @@ def see_all(
     """
     for pixel in range(mean.shape[1]):
         clear(tally)
-        row, column = pixel // optics.columns, pixel % optics.columns
+        tilt = tilt_of(optics, layers.refractive_index, pixel)
         for batch in range(tally.coarse.shape[0]):
+            shares = shared_out(
+                walks[pixel], part_early(tracks, 2 * batch + 1), part_early(tracks, 2 * batch)
+            )
             start_stream(state, address.seed, PIXELS, address.frame, batch, pixel)
-            shift_1, shift_2 = uniform(state), uniform(state)
-            shift_3, shift_4 = uniform(state), uniform(state)
-            shift_5, shift_6 = uniform(state), uniform(state)
+            shifts = Shifts(
+                uniform(state), uniform(state), uniform(state), uniform(state), uniform(state)
+            )
             for i in range(walks[pixel]):
-                evenly = Evenly(
-                    (row + fraction(shift_1 + i * PLASTIC_1)) / optics.rows,
-                    (column + fraction(shift_2 + i * PLASTIC_2)) / optics.columns,
-                    fraction(shift_3 + i / walks[pixel]),
-                    fraction(shift_4 + i * GOLDEN),
-                    fraction(shift_5 + i * TURNING_1),
-                    fraction(shift_6 + i * TURNING_2),
-                )
+                evenly = spread_evenly(i, shares, shifts)
                 see(
                     scene, layers, optics, method, tracks, tally, pixel, batch, walks[pixel],
-                    rims[pixel], evenly, state,
+                    rims[pixel], tilt, evenly, state,
                 )  # fmt: skip
         for origin in range(2):
             add_up(tally, origin, mean[origin, pixel])

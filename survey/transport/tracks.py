@@ -15,11 +15,14 @@ from numpy.typing import NDArray
 
 from survey.optics.interface import reflected
 from survey.transport.directions import turned
+from survey.transport.launch import Optics, direction_of, tangents_at
 from survey.transport.layers import Layers, bend_at, free_path
 from survey.transport.random import TRACKS, exponential, start_stream, uniform
 from terrain.kernels import inlined_fused_kernel, kernel, leaf_kernel
 
 LOST_CHANCE = 0.5
+TILTS, TILT_STEP = 8, 0.03
+"""Directions by whose paths tracks are ordered: their number, and tangents between them."""
 
 
 class Course(NamedTuple):
@@ -38,14 +41,20 @@ class Tracks(NamedTuple):
     depth it holds, instead of a direction, how likely a smaller turn is than that which leads to
     the leg, and the turn's azimuth [rad]. Tracks of a set stand in the order of their paths to a
     certain depth, so that numbers spread evenly over a set choose fast and late light evenly;
-    ``reached`` (sets,) of them get there within their legs. ``aside`` (sets, tracks, 2) is how far
-    sideways they are there, or where their legs end [m]: along the first axis, but for tracks whose
-    turns are looked up, which cannot be turned as one.
+    ``reached`` (sets,) of them get there within their legs, ``early`` (sets,) of these with hardly
+    any detour. ``aside`` (sets, tracks, 2) is how far sideways along the first two axes they are
+    there, or where their legs end [m].
+
+    Laid aslant, its first axis uphill, a track comes to the depth sooner or later: ``order``
+    (tilts, sets, tracks) holds their numbers by the paths of each tilt. Tracks whose turns are
+    looked up cannot be turned as one: their order is that of no tilt.
     """
 
     legs: NDArray[np.float32]
     aside: NDArray[np.float64]
     reached: NDArray[np.int64]
+    early: NDArray[np.int64]
+    order: NDArray[np.int64]
 
 
 class Frame(NamedTuple):
@@ -108,78 +117,99 @@ def way_to(layers: Layers, depth: float, legs: NDArray[np.float32]) -> tuple[flo
     return math.inf, x, y
 
 
+@leaf_kernel
+def draw_track(
+    layers: Layers, place: float, legs: NDArray[np.float32], state: NDArray[np.uint64]
+) -> None:
+    """Draw the legs of a track; ``place``, 0 to 1, tells the first one's optical length."""
+    dx, dy, dz = 0.0, 0.0, 1.0
+    legs[0] = dx, dy, dz, -math.log(1.0 - place)
+    for k in range(1, legs.shape[0]):
+        chance, azimuth = uniform(state), 2.0 * math.pi * uniform(state)
+        optical = exponential(state)
+        if layers.samplers.shape[0] > 1:
+            legs[k] = chance, azimuth, 0.0, optical
+        else:
+            dx, dy, dz = turned(dx, dy, dz, bend_at(layers, 0.0, chance), azimuth)
+            legs[k] = dx, dy, dz, optical
+
+
 @kernel
 def draw_tracks(
-    layers: Layers, sets: int, tracks: int, legs: int, depth: float, seed: int, frame: int
+    layers: Layers,
+    sets: int,
+    tracks: int,
+    legs: int,
+    depth: float,
+    detour: float,
+    seed: int,
+    frame: int,
 ) -> Tracks:
     """Draw the tracks of a flash and order them by their paths to a ``depth`` [m].
 
-    In each set the first optical lengths are stratified. Tracks of equal paths, as those of all
-    light that has not scattered yet, stay in the order in which they were drawn.
+    Those are early whose path is longer than the depth by less than a ``detour`` [m]. In each set
+    the first optical lengths are stratified. Tracks of equal paths, as those of all light that has
+    not scattered yet, stay in the order in which they were drawn.
     """
     result = np.empty((sets, tracks, legs, 4), np.float32)
-    aside, reached = np.empty((sets, tracks, 2)), np.empty(sets, np.int64)
+    aside, orders = np.empty((sets, tracks, 2)), np.empty((TILTS, sets, tracks), np.int64)
+    reached, early = np.empty(sets, np.int64), np.empty(sets, np.int64)
     unordered, path = np.empty((tracks, legs, 4), np.float32), np.empty(tracks)
     strayed = np.empty((tracks, 2))
     state = np.empty(2, np.uint64)
-    several = layers.samplers.shape[0] > 1
+    step = 0.0 if layers.samplers.shape[0] > 1 else TILT_STEP
     for i in range(sets):
         for j in range(tracks):
             start_stream(state, seed, TRACKS, frame, i, j)
-            dx, dy, dz = 0.0, 0.0, 1.0
-            optical = -math.log(1.0 - (j + uniform(state)) / tracks)
-            unordered[j, 0] = dx, dy, dz, optical
-            for k in range(1, legs):
-                chance, azimuth = uniform(state), 2.0 * math.pi * uniform(state)
-                optical = exponential(state)
-                if several:
-                    unordered[j, k] = chance, azimuth, 0.0, optical
-                    continue
-                dx, dy, dz = turned(dx, dy, dz, bend_at(layers, 0.0, chance), azimuth)
-                unordered[j, k] = dx, dy, dz, optical
+            draw_track(layers, (j + uniform(state)) / tracks, unordered[j], state)
             path[j], strayed[j, 0], strayed[j, 1] = way_to(layers, depth, unordered[j])
         order = np.argsort(path, kind="mergesort")
-        reached[i] = np.isfinite(path).sum()
+        reached[i], early[i] = np.isfinite(path).sum(), (path < depth + detour).sum()
         for j in range(tracks):
             result[i, j], aside[i, j] = unordered[order[j]], strayed[order[j]]
-            if not several:
-                turn_aside(result[i, j], aside[i, j])
-    return Tracks(result, aside, reached)
+        for tilt in range(TILTS):
+            aslant = path[order] + tilt * step * aside[i, :, 0]
+            orders[tilt, i] = np.argsort(aslant, kind="mergesort")
+    return Tracks(result, aside, reached, early, orders)
 
 
-@leaf_kernel
-def turn_aside(legs: NDArray[np.float32], aside: NDArray[np.float64]) -> None:
-    """Turn a track about its first leg until it strays along the first axis."""
-    away = math.sqrt(aside[0] * aside[0] + aside[1] * aside[1])
-    if away == 0.0:
-        return
-    c, s = aside[0] / away, aside[1] / away
-    for k in range(legs.shape[0]):
-        a, b = legs[k, 0], legs[k, 1]
-        legs[k, 0], legs[k, 1] = c * a - s * b, s * a + c * b
-    aside[0], aside[1] = away, 0.0
-
-
-@leaf_kernel
+@inlined_fused_kernel
 def course(tracks: Tracks, which: int, track: int, weight: float) -> Course:
     """Take a track of a set."""
     return Course(track, weight, tracks.legs[which, track, 0, 3])
 
 
-@leaf_kernel
-def chosen(tracks: Tracks, which: int, place: float) -> Course:
-    """Take the track of a set at a ``place`` from 0 to 1.
+@inlined_fused_kernel
+def part_reached(tracks: Tracks, which: int) -> tuple[float, float]:
+    """How often tracks that do not reach the depth are chosen, and the part of the others."""
+    n, reached = tracks.legs.shape[1], tracks.reached[which]
+    rarely = max(LOST_CHANCE, (n - reached) / n)
+    return rarely, 1.0 - rarely * (n - reached) / n
+
+
+@inlined_fused_kernel
+def part_early(tracks: Tracks, which: int) -> float:
+    """Part of the places from 0 to 1 at which `chosen` takes an early track."""
+    if tracks.early[which] == 0:
+        return 0.0
+    return float(part_reached(tracks, which)[1] * tracks.early[which] / tracks.reached[which])
+
+
+@inlined_fused_kernel
+def chosen(tracks: Tracks, which: int, place: float, tilt: int) -> Course:
+    """Take the track of a set at a ``place`` from 0 to 1, in the order for a tilt.
 
     Tracks that do not reach the depth light the column alone: where they are few, they are chosen
     half as often. A quarter as often would treble the column's variance in harbor water.
     """
     n, reached = tracks.legs.shape[1], tracks.reached[which]
-    rarely = max(LOST_CHANCE, (n - reached) / n)
-    share = 1.0 - rarely * (n - reached) / n
+    rarely, share = part_reached(tracks, which)
+    order = tracks.order[tilt, which]
     if place < share:
-        return course(tracks, which, int(place / share * reached), reached / (n * share))
+        return course(tracks, which, order[int(place / share * reached)], reached / (n * share))
     lost = (place - share) / (1.0 - share)
-    return course(tracks, which, min(n - 1, reached + int(lost * (n - reached))), 1.0 / rarely)
+    rank = min(n - 1, reached + int(lost * (n - reached)))
+    return course(tracks, which, order[rank], 1.0 / rarely)
 
 
 @leaf_kernel
@@ -188,7 +218,32 @@ def frame_around(
 ) -> Frame:
     """Axes with d as the third, turned about it by the azimuth at a part ``turn`` of ``circle``."""
     i = int(turn * circle.shape[0])
-    c, s = circle[i, 0], circle[i, 1]
+    return turned_frame(dx, dy, dz, circle[i, 0], circle[i, 1])
+
+
+@inlined_fused_kernel
+def frame_straying(
+    tracks: Tracks,
+    which: int,
+    track: int,
+    dx: float,
+    dy: float,
+    dz: float,
+    circle: NDArray[np.float64],
+    turn: float,
+) -> Frame:
+    """Axes with d as the third by which a track strays to the azimuth of a ``turn``."""
+    i, (east, north) = int(turn * circle.shape[0]), tracks.aside[which, track]
+    c, s, away = circle[i, 0], circle[i, 1], math.sqrt(east * east + north * north)
+    if away > 0.0:
+        east, north = east / away, north / away
+        c, s = c * east - s * north, s * east + c * north
+    return turned_frame(dx, dy, dz, c, s)
+
+
+@inlined_fused_kernel
+def turned_frame(dx: float, dy: float, dz: float, c: float, s: float) -> Frame:
+    """Axes with d as the third, turned about it by an azimuth of cosine c and sine s."""
     sign = 1.0 if dz >= 0.0 else -1.0
     shear = -1.0 / (sign + dz)
     mixed = dx * dy * shear
@@ -202,6 +257,24 @@ def frame_around(
 
 
 @inlined_fused_kernel
+def frame_uphill(dx: float, dy: float, dz: float) -> Frame:
+    """Axes with d, going down, as the third; the first leads uphill."""
+    level = math.sqrt(dx * dx + dy * dy)
+    east, north = (dx / level, dy / level) if level > 0.0 else (1.0, 0.0)
+    return Frame(-dz * east, -dz * north, level, north, -east, 0.0, dx, dy, dz)
+
+
+@leaf_kernel
+def tilt_of(optics: Optics, index: float, pixel: int) -> int:
+    """Which of the orders of tracks is for the way a pixel looks in level water."""
+    row, column = pixel // optics.columns, pixel % optics.columns
+    forward, right = tangents_at(optics, (row + 0.5) / optics.rows, (column + 0.5) / optics.columns)
+    dx, dy, _, _ = direction_of(optics, forward, right)
+    sine = math.sqrt(dx * dx + dy * dy) / index
+    return min(TILTS - 1, int(sine / math.sqrt(1.0 - sine * sine) / TILT_STEP + 0.5))
+
+
+@inlined_fused_kernel
 def aside_of(
     layers: Layers,
     tracks: Tracks,
@@ -210,12 +283,12 @@ def aside_of(
     circle: NDArray[np.float64],
     turn: float,
 ) -> tuple[float, float]:
-    """How far a track strays to east and north, laid straight down with an azimuth [m]."""
+    """How far a track strays to east and north, laid straight down to stray to an azimuth [m]."""
     aside = tracks.aside[which, way.track]
     if layers.samplers.shape[0] > 1:
         return aside[0], aside[1]
-    i = int(turn * circle.shape[0])
-    return circle[i, 0] * aside[0], -circle[i, 1] * aside[0]
+    i, away = int(turn * circle.shape[0]), math.sqrt(aside[0] * aside[0] + aside[1] * aside[1])
+    return circle[i, 0] * away, -circle[i, 1] * away
 
 
 @leaf_kernel

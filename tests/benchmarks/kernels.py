@@ -103,7 +103,7 @@ def cases() -> Iterator[tuple[str, int, Callable[[], object]]]:
     yield (
         "leg of a track",
         TRACKS * LEGS,
-        lambda: draw_tracks(layers, 1, TRACKS, LEGS, 10.0, 1, 2),
+        lambda: draw_tracks(layers, 1, TRACKS, LEGS, 10.0, 1.0, 1, 2),
     )
     yield "ray to 100,000 triangles", CALLS, lambda: hits(CALLS, grid, state)
     yield "pulse on a surface echo", PIXELS, lambda: blurred(waveforms, taps)

@@ -27,12 +27,14 @@ def test_a_track_strays_as_its_legs_say():
 def test_strays_grow_with_depth_and_have_no_side():
     engine = make_engine(water="coastal", depth=20.0)
     layers = kernel_layers(engine.water)
-    near, far = (strays(draw_tracks(layers, 2, 1024, 24, depth, 1, 2)) for depth in (5.0, 20.0))
+    near, far = (
+        strays(draw_tracks(layers, 2, 1024, 24, depth, 1.0, 1, 2)) for depth in (5.0, 20.0)
+    )
     assert far.shape == (PILOTS, 2)
     assert np.hypot(*far.T).mean() > 3.0 * np.hypot(*near.T).mean() > 0.0
     assert np.abs(far.mean(axis=0)).max() < 4.0 * far.std() / PILOTS**0.5
     never = kernel_layers(make_engine(scattering=0.0).water)
-    assert not strays(draw_tracks(never, 2, 1024, 24, 20.0, 1, 2)).any()
+    assert not strays(draw_tracks(never, 2, 1024, 24, 20.0, 1.0, 1, 2)).any()
 
 
 def test_pixels_at_the_edge_are_less_certain():
