@@ -80,7 +80,7 @@ def by_the_engine(engine, pose, place, tracks):
         ray = ray_to(optics, 0.0, INDEX, *place, DEPTH)
         slope = track.last[:2] / -track.last[2]
         light, in_air, deeper, *_ = light_sent(
-            engine._scene(pose, 0.0), optics, engine._method, Sight(0, 0, 0.0, 1.0, False), ray,
+            engine._scene(pose, 0.0), optics, engine._method, Sight(0, 0, 0.0, 1.0, False, 0), ray,
             *place, DEPTH, *track.end[:2], *slope, Facet(0.0, 0.0, 1.0), 1.0,
         )  # fmt: skip
         lit = light_on_water(optics, 0.0, *place, 0, False)
