@@ -28,6 +28,12 @@ FLASHES = 16
 GATE_BINS = 10
 TARGET_ERROR = 0.05
 MERIT_CASE = "coastal 10 m"
+MERIT_CHANGES = {"receiver.aperture_radius_m": 0.1, "transport.tracks_per_replicate": 8192}
+"""What the comparison with the textbook engine changes of its case.
+
+A wider receiver is in that engine's favour: its giant scores are smaller, and thirty flashes meet
+them. All pixels together err by the tracks that they share, so there are more.
+"""
 SPACING_M = 1.23  # of a mesh that then has 100,000 triangles
 
 
@@ -86,7 +92,8 @@ def bench(*, threads: int = 0, merit: bool = False) -> Iterator[tuple[str, dict[
     for name, case in CASES.items():
         figures = _measured(prepare(bench_scenario(case)), workers)
         if merit and name == MERIT_CASE:
-            figures |= figure_of_merit(scenario=bench_scenario(case), threads=threads)
+            scenario = bench_scenario(case, **MERIT_CHANGES)
+            figures |= figure_of_merit(scenario=scenario, threads=threads)
         yield name, figures
 
 

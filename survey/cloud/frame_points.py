@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import minimum_filter
 
 from survey.cloud.echo import Echo
 from survey.cloud.georeference import (
@@ -261,15 +262,22 @@ def bottom_points(
 
 
 def _stands_out(elevation: FloatArray, found: BoolArray) -> BoolArray:
-    """Tell which bottom points stand more than 1 m above the median of those in 15 x 15 pixels."""
-    if not found.any():
-        return found
+    """Tell which bottom points stand more than 1 m above the median of those in 15 x 15 pixels.
+
+    The median is taken where a point stands as high above the lowest of them: elsewhere it cannot.
+    """
     side = OBJECT_NEIGHBOURHOOD
+    lowest = minimum_filter(
+        np.where(found, elevation, np.inf), size=side, mode="constant", cval=np.inf
+    )
+    high = found & (elevation > lowest + OBJECT_ABOVE_BOTTOM)
+    if not high.any():
+        return high
     padded = np.pad(np.where(found, elevation, np.nan), side // 2, constant_values=np.nan)
-    neighbours = np.lib.stride_tricks.sliding_window_view(padded, (side, side))[found]
+    neighbours = np.lib.stride_tricks.sliding_window_view(padded, (side, side))[high]
     median = np.nanmedian(neighbours.reshape(-1, side * side), axis=-1)
     result = np.zeros(found.shape, np.bool_)
-    result[found] = elevation[found] - median > OBJECT_ABOVE_BOTTOM
+    result[high] = elevation[high] - median > OBJECT_ABOVE_BOTTOM
     return result
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, uniform_filter
 from scipy.stats import norm
 
+from survey.cloud.kernels.gates import windowed
 from survey.sensor.detector import Detector
 from survey.sensor.scatter import Scatter
 
@@ -246,10 +247,10 @@ def gate_sums(counts: Readout, gate_bins: int) -> FloatArray:
     >>> gate_sums(np.array([1.0, 2.0, 3.0, 4.0]), 3).tolist()
     [3.0, 6.0, 9.0, 7.0]
     """
-    half = gate_bins // 2
-    padding = [(0, 0)] * (counts.ndim - 1) + [(half + 1, half)]
-    running = np.cumsum(np.pad(np.asarray(counts, dtype=np.float64), padding), axis=-1)
-    return np.asarray(running[..., gate_bins:] - running[..., :-gate_bins])
+    values = np.ascontiguousarray(counts, dtype=np.float64)
+    result, rows = np.empty_like(values), (-1, values.shape[-1])
+    windowed(values.reshape(rows), gate_bins, result.reshape(rows))
+    return result
 
 
 def reading_error(

@@ -32,7 +32,9 @@ def small_bench(monkeypatch):
     case = bench.Case(water="coastal", depth_m=10.0, walks_per_pixel=8)
     monkeypatch.setattr(bench, "CASES", {bench.MERIT_CASE: case})
     monkeypatch.setattr(bench, "FLASHES", 3)
-    monkeypatch.setattr(bench, "bench_scenario", lambda case: whole(case, **SMALL))
+    monkeypatch.setattr(
+        bench, "bench_scenario", lambda case, **values: whole(case, **SMALL, **values)
+    )
 
 
 def test_json_has_every_case_and_what_it_was_measured_on(small_bench):
