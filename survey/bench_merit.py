@@ -12,8 +12,8 @@ flashes meet hardly any of them and show a smaller error than there is, which is
 where they do meet one, the pooled error jumps above 10 % and there is no verdict. The error of
 single pixels is above 100 % in any run that ends.
 
-The scores are the more giant the narrower the receiver: through one of 5 mm radius, in coastal water
-10 m deep, eight million photons err by 3 % as their scatter shows and by 25 % in theory.
+The scores are the more giant the narrower the receiver: through one of 5 mm radius, in coastal
+water 10 m deep, eight million photons err by 3 % as their scatter shows and by 25 % in theory.
 
 Both engines have a flat bottom and still water, for the textbook engine joins points through level
 water alone. It does not have to search a mesh for the bottom, which is in its favour. Time is

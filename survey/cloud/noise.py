@@ -249,7 +249,8 @@ def gate_sums(counts: Readout, gate_bins: int) -> FloatArray:
     """
     values = np.ascontiguousarray(counts, dtype=np.float64)
     result, rows = np.empty_like(values), (-1, values.shape[-1])
-    windowed(values.reshape(rows), gate_bins, result.reshape(rows))
+    running = np.empty(values.shape[-1] + 1)
+    windowed(values.reshape(rows), gate_bins, running, result.reshape(rows))
     return result
 
 

@@ -74,6 +74,7 @@ def test_gate_sums_are_those_of_a_box_about_each_bin() -> None:
     box = np.apply_along_axis(np.convolve, -1, values, np.ones(7), mode="same")
     assert np.array_equal(gate_sums(values, 7), box)
     assert np.array_equal(gate_sums(values, 1), values)
+    assert gate_sums(np.array([0.1, 0.2, 1e9, 0.0, 0.0, 0.0, 0.0]), 3).min() == 0.0
 
 
 @pytest.mark.parametrize("rate", [1e-1, 1e-3, 1e-6])
