@@ -138,10 +138,10 @@ def neighbours(light):
 
 @pytest.mark.parametrize(
     ("illumination", "most"),
-    [("flood", {BOTTOM: 0.12, COLUMN: 0.04}), ("isolated", {BOTTOM: 0.05})],
+    [("flood", {BOTTOM: 0.17, COLUMN: 0.04}), ("isolated", {BOTTOM: 0.05})],
 )
 def test_errors_of_neighbouring_pixels_are_hardly_correlated(illumination, most):
-    """Pixels share tracks. Coastal water, 10 m: bottom gate 6 %, column and isolated pixels none.
+    """Pixels share tracks. Coastal water, 10 m: bottom gate 13 %, column and isolated pixels none.
 
     120 flashes of 8 x 8 pixels tell it to 1 %.
     """
@@ -165,7 +165,7 @@ def correlations(flashes, illumination, scene):
 @pytest.mark.parametrize(
     ("illumination", "scene", "bottom"),
     [
-        ("flood", "coastal", 0.058), ("flood", "clear", 0.051), ("flood", "harbor", 0.103),
+        ("flood", "coastal", 0.129), ("flood", "clear", 0.103), ("flood", "harbor", 0.146),
         ("isolated", "coastal", 0.0), ("isolated", "clear", 0.0), ("isolated", "harbor", 0.0),
     ],
 )  # fmt: skip
