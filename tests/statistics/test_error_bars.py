@@ -143,7 +143,7 @@ def neighbours(light):
 def test_errors_of_neighbouring_pixels_are_hardly_correlated(illumination, most):
     """Pixels share tracks. Coastal water, 10 m: bottom gate 13 %, column and isolated pixels none.
 
-    120 flashes of 8 x 8 pixels tell it to 1 %.
+    120 flashes of 8 x 8 pixels tell it to 2 %.
     """
     found = correlations(120, illumination, "coastal")
     for origin, bound in most.items():
